@@ -1,0 +1,2 @@
+//! hwasp
+fn main() {}

@@ -1,0 +1,18 @@
+//! The differentiation engine: a law written once over [`Scalar`] becomes a straight-line [`Program`] that runs over
+//! columns of a batch; dense layers run beside it. Both offer forward, vjp (reverse) and jvp (tangent), in `f32` and `f64`.
+//! This crate knows nothing of robots.
+
+mod draw;
+pub mod fast;
+mod float;
+mod gradcheck;
+mod program;
+mod scalar;
+mod trace;
+
+pub use draw::GraphStyle;
+pub use float::Float;
+pub use gradcheck::{GradCheck, GradCheckError, gradcheck};
+pub use program::{Program, ProgramTape};
+pub use scalar::Scalar;
+pub use trace::Var;

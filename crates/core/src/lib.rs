@@ -1,1 +1,26 @@
-//! placeholder
+//! What a robot is made of here: a design space, a hardware law over it, a plant with a task (the environment), and a
+//! policy that composes a controller with the law. Random streams and rollouts are by name and by episode index, so that
+//! the number of threads changes nothing.
+
+mod check_env;
+mod design;
+mod environment;
+mod executor;
+mod gaussian;
+mod hardware;
+mod placement;
+mod policy;
+mod rollout;
+mod streams;
+mod units;
+
+pub use check_env::{EnvFault, check_env};
+pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
+pub use environment::{
+    CommandPort, End, Environment, EnvSpec, MakeEnvironment, Plant, Port, Robot, Step, Task,
+};
+pub use executor::{Executor, Serial, Threads};
+pub use hardware::{Hardware, Law, Ports};
+pub use placement::{Placement, PlacementError};
+pub use streams::{Purpose, Stream, stream};
+pub use units::{Dimension, Unit, UnitError, parse_quantity};

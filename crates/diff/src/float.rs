@@ -6,7 +6,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `f32` (training) or `f64` (simulation and checks).
 pub trait Float:
-    Copy
+    crate::dense::kernels::Lanes
+    + Copy
     + Debug
     + Default
     + PartialEq

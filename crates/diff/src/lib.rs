@@ -2,6 +2,7 @@
 //! columns of a batch; dense layers run beside it. Both offer forward, vjp (reverse) and jvp (tangent), in `f32` and `f64`.
 //! This crate knows nothing of robots.
 
+mod dense;
 mod draw;
 pub mod fast;
 mod float;
@@ -10,9 +11,10 @@ mod program;
 mod scalar;
 mod trace;
 
+pub use dense::{Activation, Mlp, MlpTape};
 pub use draw::GraphStyle;
 pub use float::Float;
-pub use gradcheck::{GradCheck, GradCheckError, gradcheck};
+pub use gradcheck::{GradCheck, GradCheckError, GradCheckSettings, gradcheck};
 pub use program::{Program, ProgramTape};
 pub use scalar::Scalar;
 pub use trace::Var;

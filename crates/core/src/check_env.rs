@@ -1,0 +1,268 @@
+//! Invariants that every environment keeps, in one suite (after Gymnasium's `env_checker` and `dm_control`'s suite tests).
+
+mod fault;
+
+use rand::RngExt;
+
+use crate::design::DesignSpace;
+use crate::environment::{End, EnvSpec, Environment, MakeEnvironment};
+use crate::hardware::Law;
+use crate::streams::{Purpose, stream};
+
+pub use fault::EnvFault;
+
+/// The most steps that a comparison of episodes takes: long enough to reach the limits of a plant.
+const STEPS: usize = 200;
+/// How many random starts are compared.
+const STARTS: u64 = 8;
+
+/// Drives environments from `make` with random commands through `law` with random designs, and returns the first broken
+/// promise: sane names, limits and horizon, the law's ports; finite observations, states and rewards of the declared
+/// lengths; starts that depend on the random stream and on nothing else (or on nothing at all, with `fixed_start`); the
+/// same bits for the same commands; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
+/// also at another one; nothing left of an episode after a reset, nothing shared between two environments.
+pub fn check_env(make: &dyn MakeEnvironment, law: &Law, fixed_start: bool) -> Result<(), EnvFault> {
+    let spec = make.make(None).spec().clone();
+    check_spec(&spec)?;
+    check_ports(&spec, law)?;
+    let check = Check { make, law, spec };
+    check.starts(fixed_start)?;
+    check.repeats()?;
+    check.limits()?;
+    for horizon in [None, Some(1), Some(7)] {
+        check.end(horizon)?;
+    }
+    Ok(())
+}
+
+fn check_spec(spec: &EnvSpec) -> Result<(), EnvFault> {
+    for (kind, names) in names(spec) {
+        if names.is_empty() && kind != "effort" && kind != "state" {
+            return Err(EnvFault::NoPort { kind });
+        }
+        for (index, name) in names.iter().enumerate() {
+            if name.trim().is_empty() {
+                return Err(EnvFault::Unnamed { kind, index });
+            }
+            if names[..index].contains(name) {
+                return Err(EnvFault::Twice { kind, name: name.clone() });
+            }
+        }
+    }
+    for port in &spec.command {
+        if !(port.lo.is_finite() && port.hi.is_finite() && port.lo < port.hi) {
+            return Err(EnvFault::Limits { name: port.name.clone(), lo: port.lo, hi: port.hi });
+        }
+    }
+    if spec.horizon == 0 { Err(EnvFault::Horizon) } else { Ok(()) }
+}
+
+fn names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {
+    let of = |ports: &[crate::Port]| ports.iter().map(|p| p.name.clone()).collect();
+    [
+        ("observation", of(&spec.observation)),
+        ("state", of(&spec.state)),
+        ("effort", of(&spec.effort)),
+        ("command", spec.command.iter().map(|p| p.name.clone()).collect()),
+    ]
+}
+
+fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
+    let ports = law.ports();
+    for (kind, environment) in names(spec) {
+        let law = match kind {
+            "state" => &ports.state,
+            "effort" => &ports.effort,
+            "command" => &ports.command,
+            _ => continue,
+        };
+        if *law != environment {
+            return Err(EnvFault::Ports { kind, law: law.clone(), environment });
+        }
+    }
+    Ok(())
+}
+
+/// What can be seen of one moment; at the start the reward is 0 and the end is none.
+#[derive(Clone, Debug)]
+struct Moment {
+    parts: [(&'static str, Vec<f64>); 4],
+    end: Option<End>,
+}
+
+impl Moment {
+    /// Looks at the environment; the lists are filled with NaN before, so that what is not written is found.
+    fn look(env: &dyn Environment, step: usize, reward: f64, end: Option<End>) -> Result<Self, EnvFault> {
+        let mut observation = vec![f64::NAN; env.spec().observation.len()];
+        let mut state = vec![f64::NAN; env.spec().state.len()];
+        env.observe(&mut observation);
+        env.state(&mut state);
+        let code = match end {
+            None => 0.0,
+            Some(End::Terminated) => 1.0,
+            Some(End::Truncated) => 2.0,
+        };
+        let parts = [("observation", observation), ("state", state), ("reward", vec![reward]), ("end", vec![code])];
+        let moment = Self { parts, end };
+        for (kind, values) in &moment.parts {
+            if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+                return Err(EnvFault::NotFinite { kind, index, value: values[index], step });
+            }
+        }
+        Ok(moment)
+    }
+
+    /// Bit by bit: -0 is not 0 here.
+    fn same(&self, other: &Self, cause: &'static str, step: usize) -> Result<(), EnvFault> {
+        for ((kind, first), (_, second)) in self.parts.iter().zip(&other.parts) {
+            for (index, (&first, &second)) in first.iter().zip(second).enumerate() {
+                if first.to_bits() != second.to_bits() {
+                    return Err(EnvFault::Differs { cause, kind, index, first, second, step });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What the checks that run episodes share.
+struct Check<'a> {
+    make: &'a dyn MakeEnvironment,
+    law: &'a Law,
+    spec: EnvSpec,
+}
+
+impl Check<'_> {
+    /// Resets to the start of this episode's stream.
+    fn reset(env: &mut dyn Environment, episode: u64) -> Result<Moment, EnvFault> {
+        env.reset(&mut stream(0, Purpose::Check, 0, episode));
+        Moment::look(env, 0, 0.0, None)
+    }
+
+    /// A design and commands, both within their limits, for this episode.
+    fn inputs(&self, episode: u64, steps: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let rng = &mut stream(0, Purpose::Check, 1, episode);
+        let space: &DesignSpace = self.law.design();
+        let design = space.values(&space.sample_initial(rng));
+        let mut draw = || self.spec.command.iter().map(|p| p.lo + (p.hi - p.lo) * rng.random::<f64>()).collect();
+        (design, (0..steps).map(|_| draw()).collect())
+    }
+
+    /// One step through the law, which sees `command`; the environment gets `sent`.
+    fn step(
+        &self,
+        env: &mut dyn Environment,
+        design: &[f64],
+        (command, sent): (&[f64], &[f64]),
+        step: usize,
+    ) -> Result<Moment, EnvFault> {
+        let mut state = vec![0.0; self.spec.state.len()];
+        let mut effort = vec![0.0; self.spec.effort.len()];
+        env.state(&mut state);
+        self.law.effort(design, command, &state, &mut effort);
+        let result = env.step(&effort, sent);
+        Moment::look(env, step, result.reward, result.end)
+    }
+
+    /// The episode of this number, up to its end or to [`STEPS`] steps.
+    fn episode(&self, env: &mut dyn Environment, episode: u64) -> Result<Vec<Moment>, EnvFault> {
+        let (design, commands) = self.inputs(episode, STEPS.min(env.spec().horizon));
+        let mut moments = vec![Self::reset(env, episode)?];
+        for (i, command) in commands.iter().enumerate() {
+            moments.push(self.step(env, &design, (command, command), i + 1)?);
+            if moments[i + 1].end.is_some() {
+                break;
+            }
+        }
+        Ok(moments)
+    }
+
+    /// Starts follow the stream.
+    fn starts(&self, fixed: bool) -> Result<(), EnvFault> {
+        let mut env = self.make.make(None);
+        let mut starts = Vec::new();
+        for episode in 0..STARTS {
+            starts.push(Self::reset(env.as_mut(), episode)?);
+            let again = Self::reset(env.as_mut(), episode)?;
+            starts[episode as usize].same(&again, "the same stream starts both", 0)?;
+        }
+        let first_of_its_kind = |i: &usize| starts[..*i].iter().all(|s| s.same(&starts[*i], "", 0).is_err());
+        let distinct = (0..starts.len()).filter(first_of_its_kind).count();
+        // Of random starts a few may coincide where there are only a few; all of them do not.
+        if (distinct == 1) == fixed { Ok(()) } else { Err(EnvFault::Starts { distinct, streams: starts.len(), fixed }) }
+    }
+
+    /// An episode is the same in a fresh environment, after another episode, after a part of one, and beside another one.
+    fn repeats(&self) -> Result<(), EnvFault> {
+        let mut env = self.make.make(None);
+        let wanted = self.episode(env.as_mut(), 0)?;
+        let compare = |moments: &[Moment], cause| {
+            wanted.iter().zip(moments).enumerate().try_for_each(|(i, (a, b))| a.same(b, cause, i))
+        };
+        let mut fresh = self.make.make(None);
+        compare(&self.episode(fresh.as_mut(), 0)?, "both are the same episode in fresh environments")?;
+        compare(&self.episode(env.as_mut(), 0)?, "a reset leaves nothing of the episode before")?;
+
+        let (design, commands) = self.inputs(0, wanted.len() - 1);
+        let (other_design, other_commands) = self.inputs(1, wanted.len() - 1);
+        let mut beside = self.make.make(None);
+        Self::reset(env.as_mut(), 0)?;
+        Self::reset(beside.as_mut(), 1)?;
+        let mut beside_runs = true;
+        for (i, (command, other)) in commands.iter().zip(&other_commands).enumerate() {
+            let moment = self.step(env.as_mut(), &design, (command, command), i + 1)?;
+            wanted[i + 1].same(&moment, "another environment beside it changes nothing", i + 1)?;
+            beside_runs =
+                beside_runs && self.step(beside.as_mut(), &other_design, (other, other), i + 1)?.end.is_none();
+        }
+        Ok(())
+    }
+
+    /// A command beyond its limits does what the limit does.
+    fn limits(&self) -> Result<(), EnvFault> {
+        let (mut at, mut beyond) = (self.make.make(None), self.make.make(None));
+        let (design, commands) = self.inputs(2, STEPS.min(self.spec.horizon));
+        Self::reset(at.as_mut(), 2)?;
+        Self::reset(beyond.as_mut(), 2)?;
+        for (i, command) in commands.iter().enumerate() {
+            let (mut limit, mut sent) = (command.clone(), command.clone());
+            for (c, port) in self.spec.command.iter().enumerate() {
+                let upper = command[c] > 0.5 * (port.lo + port.hi);
+                limit[c] = if upper { port.hi } else { port.lo };
+                sent[c] = limit[c] + if upper { 1.0 } else { -1.0 } * (port.hi - port.lo);
+            }
+            let first = self.step(at.as_mut(), &design, (&limit, &limit), i + 1)?;
+            let second = self.step(beyond.as_mut(), &design, (&limit, &sent), i + 1)?;
+            first.same(&second, "one command is at its limit, the other beyond", i + 1)?;
+            if first.end.is_some() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Truncation exactly at the horizon, twice in a row; termination at any time.
+    fn end(&self, horizon: Option<usize>) -> Result<(), EnvFault> {
+        let mut env = self.make.make(horizon);
+        let found = env.spec().horizon;
+        let asked = horizon.unwrap_or(self.spec.horizon);
+        if found != asked {
+            return Err(EnvFault::Override { asked, found });
+        }
+        for episode in [3, 4] {
+            let (design, commands) = self.inputs(episode, found);
+            Self::reset(env.as_mut(), episode)?;
+            for (i, command) in commands.iter().enumerate() {
+                let end = self.step(env.as_mut(), &design, (command, command), i + 1)?.end;
+                if end == Some(End::Terminated) {
+                    break;
+                }
+                let expected = (i + 1 == found).then_some(End::Truncated);
+                if end != expected {
+                    return Err(EnvFault::End { horizon: found, step: i + 1, end, expected });
+                }
+            }
+        }
+        Ok(())
+    }
+}

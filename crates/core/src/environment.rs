@@ -1,0 +1,188 @@
+//! Environments: a plant (physics) with a task (purpose).
+
+use crate::streams::Stream;
+use crate::units::Dimension;
+
+/// How an episode ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// In a state of no future: its value is zero.
+    Terminated,
+    /// Out of time; the future went on, so its value is estimated.
+    Truncated,
+}
+
+/// What one step gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The reward of the step.
+    pub reward: f64,
+    /// Whether and how the episode ended with it.
+    pub end: Option<End>,
+}
+
+/// A named quantity.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// Its name, as laws and plots use it.
+    pub name: String,
+    /// What it measures, in the SI unit of it.
+    pub dimension: Dimension,
+}
+
+/// A motor: a command with limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommandPort {
+    /// Its name.
+    pub name: String,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// The least the motor takes.
+    pub lo: f64,
+    /// The most it takes.
+    pub hi: f64,
+}
+
+/// What an environment is from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnvSpec {
+    /// What the controller sees.
+    pub observation: Vec<Port>,
+    /// What only the law sees: the plant's state at the interface.
+    pub state: Vec<Port>,
+    /// What the mechanism gives the plant.
+    pub effort: Vec<Port>,
+    /// The motors.
+    pub command: Vec<CommandPort>,
+    /// Environment steps of an episode, if nothing ends it before.
+    pub horizon: usize,
+}
+
+/// Physics, without purpose: what the robot and the world do under an effort.
+pub trait Plant: Send {
+    /// One control step under `effort` (from the law) and `command` (clipped to the motors' limits), both held.
+    fn advance(&mut self, effort: &[f64], command: &[f64]);
+
+    /// Writes the privileged state that laws read.
+    fn state(&self, out: &mut [f64]);
+}
+
+/// Purpose: where an episode starts, what is seen of the plant, and what it is worth.
+pub trait Task: Send {
+    /// The physics it is a task for.
+    type Plant: Plant;
+
+    /// Names, units and limits. The horizon in it is the task's own.
+    fn spec(&self) -> EnvSpec;
+
+    /// Puts the plant into a start state drawn from `rng`.
+    fn reset(&mut self, plant: &mut Self::Plant, rng: &mut Stream);
+
+    /// Writes what the controller sees, in SI.
+    fn observe(&self, plant: &Self::Plant, out: &mut [f64]);
+
+    /// The reward of having arrived at this state under `command`.
+    fn reward(&self, plant: &Self::Plant, command: &[f64]) -> f64;
+
+    /// Whether this state has no future.
+    fn terminated(&self, _plant: &Self::Plant) -> bool {
+        false
+    }
+}
+
+/// What a rollout drives. Efforts come from a law, commands from a controller; the environment knows neither.
+pub trait Environment: Send {
+    /// Names, units, limits and horizon.
+    fn spec(&self) -> &EnvSpec;
+
+    /// Starts an episode.
+    fn reset(&mut self, rng: &mut Stream);
+
+    /// Writes what the controller sees, in SI.
+    fn observe(&self, out: &mut [f64]);
+
+    /// Writes what only the law sees, in SI.
+    fn state(&self, out: &mut [f64]);
+
+    /// One control step. Commands are limited to their ports' ranges by the environment itself.
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step;
+}
+
+/// A plant with a task: the one environment there is.
+#[derive(Clone, Debug)]
+pub struct Robot<T: Task> {
+    plant: T::Plant,
+    task: T,
+    spec: EnvSpec,
+    /// Steps taken in this episode.
+    taken: usize,
+    /// The command within its limits, kept to spare an allocation per step.
+    limited: Vec<f64>,
+}
+
+impl<T: Task> Robot<T> {
+    /// Puts them together. `horizon` replaces the task's own where training episodes should be shorter.
+    pub fn new(plant: T::Plant, task: T, horizon: Option<usize>) -> Self {
+        let mut spec = task.spec();
+        spec.horizon = horizon.unwrap_or(spec.horizon);
+        let limited = vec![0.0; spec.command.len()];
+        Self { plant, task, spec, taken: 0, limited }
+    }
+
+    /// The physics, to look at.
+    pub fn plant(&self) -> &T::Plant {
+        &self.plant
+    }
+
+    /// The physics, to set up a state of one's own.
+    pub fn plant_mut(&mut self) -> &mut T::Plant {
+        &mut self.plant
+    }
+}
+
+impl<T: Task> Environment for Robot<T> {
+    fn spec(&self) -> &EnvSpec {
+        &self.spec
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.taken = 0;
+        self.task.reset(&mut self.plant, rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.task.observe(&self.plant, out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.plant.state(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        for ((limited, &command), port) in self.limited.iter_mut().zip(command).zip(&self.spec.command) {
+            *limited = command.clamp(port.lo, port.hi);
+        }
+        self.plant.advance(effort, &self.limited);
+        self.taken += 1;
+        let end = if self.task.terminated(&self.plant) {
+            Some(End::Terminated)
+        } else if self.taken >= self.spec.horizon {
+            Some(End::Truncated)
+        } else {
+            None
+        };
+        Step { reward: self.task.reward(&self.plant, &self.limited), end }
+    }
+}
+
+/// Makes environments of one kind, for as many threads as there are.
+pub trait MakeEnvironment: Send + Sync {
+    /// A fresh one; `horizon` replaces the task's own.
+    fn make(&self, horizon: Option<usize>) -> Box<dyn Environment>;
+}
+
+impl<F: Fn(Option<usize>) -> Box<dyn Environment> + Send + Sync> MakeEnvironment for F {
+    fn make(&self, horizon: Option<usize>) -> Box<dyn Environment> {
+        self(horizon)
+    }
+}

@@ -1,0 +1,160 @@
+//! Units that files may name. Inside, everything is SI.
+
+use thiserror::Error;
+
+/// A physical dimension, as far as designs and settings need them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dimension {
+    /// A pure number.
+    None,
+    /// Length, m.
+    Length,
+    /// Speed, m/s.
+    Speed,
+    /// Time, s.
+    Time,
+    /// Mass, kg.
+    Mass,
+    /// Force, N.
+    Force,
+    /// Torque, N·m.
+    Torque,
+    /// Angle, rad.
+    Angle,
+    /// Angular speed, rad/s.
+    AngularSpeed,
+    /// Linear stiffness, N/m.
+    Stiffness,
+    /// Torsional stiffness, N·m/rad.
+    TorsionalStiffness,
+    /// Linear damping, N·s/m.
+    Damping,
+}
+
+/// A named unit: its symbol, its dimension and the factor to SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// The symbol as written in files.
+    pub symbol: &'static str,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// Multiply by this to get the SI value.
+    pub to_si: f64,
+}
+
+/// Every unit, the SI one of each dimension first. ASCII spellings (`N*m`) are accepted beside the dotted ones.
+const UNITS: &[Unit] = &[
+    Unit { symbol: "", dimension: Dimension::None, to_si: 1.0 },
+    Unit { symbol: "m", dimension: Dimension::Length, to_si: 1.0 },
+    Unit { symbol: "mm", dimension: Dimension::Length, to_si: 1e-3 },
+    Unit { symbol: "cm", dimension: Dimension::Length, to_si: 1e-2 },
+    Unit { symbol: "m/s", dimension: Dimension::Speed, to_si: 1.0 },
+    Unit { symbol: "mm/s", dimension: Dimension::Speed, to_si: 1e-3 },
+    Unit { symbol: "s", dimension: Dimension::Time, to_si: 1.0 },
+    Unit { symbol: "ms", dimension: Dimension::Time, to_si: 1e-3 },
+    Unit { symbol: "kg", dimension: Dimension::Mass, to_si: 1.0 },
+    Unit { symbol: "g", dimension: Dimension::Mass, to_si: 1e-3 },
+    Unit { symbol: "N", dimension: Dimension::Force, to_si: 1.0 },
+    Unit { symbol: "mN", dimension: Dimension::Force, to_si: 1e-3 },
+    Unit { symbol: "N·m", dimension: Dimension::Torque, to_si: 1.0 },
+    Unit { symbol: "N·mm", dimension: Dimension::Torque, to_si: 1e-3 },
+    Unit { symbol: "rad", dimension: Dimension::Angle, to_si: 1.0 },
+    Unit { symbol: "deg", dimension: Dimension::Angle, to_si: std::f64::consts::PI / 180.0 },
+    Unit { symbol: "rad/s", dimension: Dimension::AngularSpeed, to_si: 1.0 },
+    Unit { symbol: "N/m", dimension: Dimension::Stiffness, to_si: 1.0 },
+    Unit { symbol: "N/mm", dimension: Dimension::Stiffness, to_si: 1e3 },
+    Unit { symbol: "N·m/rad", dimension: Dimension::TorsionalStiffness, to_si: 1.0 },
+    Unit { symbol: "N·mm/rad", dimension: Dimension::TorsionalStiffness, to_si: 1e-3 },
+    Unit { symbol: "N·s/m", dimension: Dimension::Damping, to_si: 1.0 },
+];
+
+/// Why a text is not a quantity of the dimension asked for.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum UnitError {
+    /// The leading number cannot be read.
+    #[error("`{text}` does not begin with a number")]
+    Number {
+        /// What was written.
+        text: String,
+    },
+    /// The unit is not known.
+    #[error("unknown unit `{symbol}` in `{text}`")]
+    Unknown {
+        /// What was written.
+        text: String,
+        /// The unit part of it.
+        symbol: String,
+    },
+    /// The unit measures something else.
+    #[error("`{text}` has the unit `{symbol}`, which does not measure what is asked for here")]
+    Dimension {
+        /// What was written.
+        text: String,
+        /// The unit part of it.
+        symbol: String,
+    },
+    /// A number without a unit where one is needed.
+    #[error("`{text}` names no unit")]
+    Missing {
+        /// What was written.
+        text: String,
+    },
+}
+
+impl Dimension {
+    /// The SI symbol, empty for pure numbers.
+    pub fn si(self) -> &'static str {
+        UNITS.iter().find(|u| u.dimension == self).map_or("", |u| u.symbol)
+    }
+
+    /// Every symbol that measures this dimension.
+    pub fn symbols(self) -> Vec<&'static str> {
+        UNITS.iter().filter(|u| u.dimension == self).map(|u| u.symbol).collect()
+    }
+}
+
+/// Reads `"100 N/m"` or `"2.5 N·mm"` (also `N*mm`) and returns the SI value.
+pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+    let trimmed = text.trim();
+    let split = trimmed
+        .char_indices()
+        .find(|&(i, c)| {
+            // An exponent's letter belongs to the number only when a digit or sign follows.
+            let exponent = matches!(c, 'e' | 'E')
+                && trimmed[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
+            !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_') || exponent)
+        })
+        .map_or(trimmed.len(), |(i, _)| i);
+    let (number, symbol) = (trimmed[..split].replace('_', ""), trimmed[split..].trim().replace('*', "·"));
+    let text = text.to_owned();
+    let Ok(value) = number.parse::<f64>() else { return Err(UnitError::Number { text }) };
+    if symbol.is_empty() && dimension != Dimension::None {
+        return Err(UnitError::Missing { text });
+    }
+    match UNITS.iter().find(|u| u.symbol == symbol) {
+        None => Err(UnitError::Unknown { text, symbol }),
+        Some(unit) if unit.dimension == dimension => Ok(value * unit.to_si),
+        Some(_) => Err(UnitError::Dimension { text, symbol }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_numbers_with_units() {
+        assert_eq!(parse_quantity("100 N/m", Dimension::Stiffness), Ok(100.0));
+        assert_eq!(parse_quantity("1.5e-1 m", Dimension::Length), Ok(0.15));
+        assert_eq!(parse_quantity("-2 N*mm", Dimension::Torque), Ok(-0.002));
+        assert_eq!(parse_quantity("20mm", Dimension::Length), Ok(0.02));
+    }
+
+    #[test]
+    fn refuses_what_is_not_asked_for() {
+        assert!(matches!(parse_quantity("100", Dimension::Stiffness), Err(UnitError::Missing { .. })));
+        assert!(matches!(parse_quantity("100 N", Dimension::Stiffness), Err(UnitError::Dimension { .. })));
+        assert!(matches!(parse_quantity("100 lbf", Dimension::Force), Err(UnitError::Unknown { .. })));
+        assert!(matches!(parse_quantity("fast", Dimension::Speed), Err(UnitError::Number { .. })));
+    }
+}

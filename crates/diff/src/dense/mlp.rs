@@ -1,0 +1,439 @@
+//! Perceptrons of any depth and width: forward, vjp and jvp over blocks of rows.
+
+use pulp::{Simd, WithSimd};
+
+use super::aligned::Aligned;
+use super::kernels::{Onto, product, product_transposed};
+use super::passes::{activate, add_rows, differentiate, dot};
+use crate::Float;
+
+/// What a layer does to its sums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activation {
+    /// The hyperbolic tangent.
+    Tanh,
+    /// max(0, z); no derivative at zero.
+    Relu,
+    /// Nothing.
+    Identity,
+}
+
+/// A last layer of at most this many outputs is computed by dot products: padded to a vector it would mostly idle.
+const NARROW: usize = 4;
+
+/// The shape of a perceptron: `sizes[0]` inputs, then one layer per further size.
+///
+/// Parameters lie in one vector, layer by layer: weights `[in × out]` row by row, then biases `[out]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mlp {
+    sizes: Vec<usize>,
+    hidden: Activation,
+    output: Activation,
+}
+
+#[derive(Clone, Copy)]
+struct Layer {
+    inputs: usize,
+    outputs: usize,
+    /// Where its parameters begin.
+    at: usize,
+    activation: Activation,
+    narrow: bool,
+}
+
+impl Layer {
+    fn bias_at(&self) -> usize {
+        self.at + self.inputs * self.outputs
+    }
+}
+
+/// The padded weights of one layer and what a block of rows left there.
+#[derive(Debug)]
+struct LayerTape<F> {
+    /// Weights `[in × padded out]`; `[out × padded in]` in a narrow layer.
+    weights: Aligned<F>,
+    /// Their transpose, padded, for the way back; empty where it is not needed.
+    transposed: Aligned<F>,
+    bias: Aligned<F>,
+    /// Sums of cotangents, shaped as the weights and the bias.
+    weights_cotangent: Aligned<F>,
+    bias_cotangent: Aligned<F>,
+    /// Tangents of weights and bias, shaped as they are.
+    weights_tangent: Aligned<F>,
+    bias_tangent: Aligned<F>,
+    /// Activations `[rows × stride]`.
+    output: Aligned<F>,
+    /// Their tangents.
+    tangent: Aligned<F>,
+    /// Padded outputs, the row stride of `output`; the true number in a narrow layer.
+    stride: usize,
+    layer: Shape,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    inputs: usize,
+    outputs: usize,
+    activation: Activation,
+    narrow: bool,
+}
+
+/// Working memory of an [`Mlp`] for blocks of up to a fixed number of rows.
+#[derive(Debug)]
+pub struct MlpTape<F> {
+    layers: Vec<LayerTape<F>>,
+    /// Cotangents of a layer's outputs and of its inputs, in turn.
+    cotangents: [Aligned<F>; 2],
+    max_rows: usize,
+    rows: usize,
+}
+
+fn padded<F: Float>(n: usize) -> usize {
+    n.next_multiple_of(F::WIDTH)
+}
+
+impl Mlp {
+    /// A perceptron of these sizes (inputs, hidden layers, outputs), at least two of them and none zero.
+    ///
+    /// # Panics
+    /// If there are fewer than two sizes or one is zero; experiment files are checked before.
+    pub fn new(sizes: &[usize], hidden: Activation, output: Activation) -> Self {
+        assert!(sizes.len() >= 2 && sizes.iter().all(|&n| n > 0), "not the sizes of a perceptron: {sizes:?}");
+        Self { sizes: sizes.to_vec(), hidden, output }
+    }
+
+    /// Inputs, hidden layers, outputs.
+    pub fn sizes(&self) -> &[usize] {
+        &self.sizes
+    }
+
+    /// The number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.sizes[0]
+    }
+
+    /// The number of outputs.
+    pub fn outputs(&self) -> usize {
+        self.sizes[self.sizes.len() - 1]
+    }
+
+    /// The length of the parameter vector.
+    pub fn param_count(&self) -> usize {
+        self.sizes.windows(2).map(|w| (w[0] + 1) * w[1]).sum()
+    }
+
+    /// Where the last layer's parameters lie in the parameter vector: weights, then biases.
+    pub fn last_layer(&self) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
+        let layer = self.layers().last();
+        layer.map_or((0..0, 0..0), |l| (l.at..l.bias_at(), l.bias_at()..l.bias_at() + l.outputs))
+    }
+
+    fn layers(&self) -> impl Iterator<Item = Layer> + '_ {
+        let count = self.sizes.len() - 1;
+        self.sizes.windows(2).enumerate().scan(0, move |next, (l, w)| {
+            let at = *next;
+            *next += (w[0] + 1) * w[1];
+            let activation = if l + 1 == count { self.output } else { self.hidden };
+            let narrow = l > 0 && w[1] <= NARROW;
+            Some(Layer { inputs: w[0], outputs: w[1], at, activation, narrow })
+        })
+    }
+
+    /// Fresh parameters: weights uniform in ±sqrt(6/(in + out)) (Glorot and Bengio 2010, eq. 16), biases zero, the last
+    /// layer's weights times `output_gain`. `uniform` draws from [0, 1).
+    pub fn init(&self, output_gain: f64, mut uniform: impl FnMut() -> f64) -> Vec<f32> {
+        let mut params = vec![0.0; self.param_count()];
+        let last = self.sizes.len() - 2;
+        for (l, layer) in self.layers().enumerate() {
+            let gain = if l == last { output_gain } else { 1.0 };
+            let limit = gain * (6.0 / (layer.inputs + layer.outputs) as f64).sqrt();
+            for weight in &mut params[layer.at..layer.bias_at()] {
+                *weight = ((uniform() * 2.0 - 1.0) * limit) as f32;
+            }
+        }
+        params
+    }
+
+    /// Working memory for blocks of up to `max_rows` rows.
+    pub fn tape<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
+        let mut widest = 0;
+        let layers = self
+            .layers()
+            .map(|l| {
+                let (long, short) = if l.narrow { (l.outputs, padded::<F>(l.inputs)) } else { (l.inputs, padded::<F>(l.outputs)) };
+                let stride = if l.narrow { l.outputs } else { short };
+                widest = widest.max(stride).max(padded::<F>(l.inputs));
+                let weights = Aligned::zeroed(long * short);
+                let bias = Aligned::zeroed(stride);
+                let transposed = if l.narrow || l.at == 0 { 0 } else { l.outputs * padded::<F>(l.inputs) };
+                let output = Aligned::zeroed(max_rows * stride);
+                LayerTape {
+                    transposed: Aligned::zeroed(transposed),
+                    weights_cotangent: weights.clone(),
+                    weights_tangent: weights.clone(),
+                    weights,
+                    bias_cotangent: bias.clone(),
+                    bias_tangent: bias.clone(),
+                    bias,
+                    tangent: output.clone(),
+                    output,
+                    stride,
+                    layer: Shape { inputs: l.inputs, outputs: l.outputs, activation: l.activation, narrow: l.narrow },
+                }
+            })
+            .collect();
+        let cotangent = Aligned::zeroed(max_rows * widest);
+        MlpTape { layers, cotangents: [cotangent.clone(), cotangent], max_rows, rows: 0 }
+    }
+
+    /// Takes over a parameter vector and clears the sums of cotangents.
+    pub fn bind<F: Float>(&self, params: &[F], tape: &mut MlpTape<F>) {
+        for (l, t) in self.layers().zip(&mut tape.layers) {
+            pack(&l, params, &mut t.weights, &mut t.bias);
+            if !t.transposed.is_empty() {
+                let given = &params[l.at..l.bias_at()];
+                transpose(given, l.outputs, padded::<F>(l.inputs), &mut t.transposed);
+            }
+            t.weights_cotangent.fill(F::ZERO);
+            t.bias_cotangent.fill(F::ZERO);
+        }
+    }
+
+    /// Takes over a direction in parameter space for [`jvp`](Self::jvp).
+    pub fn bind_tangent<F: Float>(&self, tangent: &[F], tape: &mut MlpTape<F>) {
+        for (l, t) in self.layers().zip(&mut tape.layers) {
+            pack(&l, tangent, &mut t.weights_tangent, &mut t.bias_tangent);
+        }
+    }
+
+    /// Runs `input` `[rows × inputs]`, row by row, through the bound parameters. See [`MlpTape::output`].
+    ///
+    /// A row's bits do not depend on the rows beside it.
+    ///
+    /// # Panics
+    /// If there are more rows than the tape was made for.
+    #[inline]
+    pub fn forward<F: Float>(&self, input: &[F], rows: usize, tape: &mut MlpTape<F>) {
+        assert!(rows <= tape.max_rows, "{rows} rows on a tape for {}", tape.max_rows);
+        tape.rows = rows;
+        pulp::Arch::new().dispatch(Forward { inputs: self.sizes[0], input, tape });
+    }
+
+    /// Adds the gradient of Σ cotangent·output to the tape's sums, after [`forward`](Self::forward) of the same input.
+    /// `cotangent` is `[rows × outputs]`, row by row.
+    pub fn vjp<F: Float>(&self, input: &[F], cotangent: &[F], tape: &mut MlpTape<F>) {
+        pulp::Arch::new().dispatch(Backward { inputs: self.sizes[0], input, cotangent, tape });
+    }
+
+    /// Adds the sums of cotangents to `gradient`, shaped as the parameters.
+    pub fn gradient<F: Float>(&self, tape: &MlpTape<F>, gradient: &mut [F]) {
+        for (l, t) in self.layers().zip(&tape.layers) {
+            if l.narrow {
+                let stride = padded::<F>(l.inputs);
+                for i in 0..l.inputs {
+                    for j in 0..l.outputs {
+                        gradient[l.at + i * l.outputs + j] += t.weights_cotangent[j * stride + i];
+                    }
+                }
+            } else {
+                let rows = gradient[l.at..l.bias_at()].chunks_exact_mut(l.outputs);
+                for (to, from) in rows.zip(t.weights_cotangent.chunks_exact(t.stride)) {
+                    for (to, &from) in to.iter_mut().zip(from) {
+                        *to += from;
+                    }
+                }
+            }
+            for j in 0..l.outputs {
+                gradient[l.bias_at() + j] += t.bias_cotangent[j];
+            }
+        }
+    }
+
+    /// The outputs' tangents along the bound direction, after [`forward`](Self::forward) of the same input.
+    /// See [`MlpTape::tangent`].
+    pub fn jvp<F: Float>(&self, input: &[F], tape: &mut MlpTape<F>) {
+        pulp::Arch::new().dispatch(Tangent { inputs: self.sizes[0], input, tape });
+    }
+}
+
+/// Lays the parameters of a layer out on padded rows.
+fn pack<F: Float>(l: &Layer, params: &[F], weights: &mut [F], bias: &mut [F]) {
+    let (given, biases) = params[l.at..][..(l.inputs + 1) * l.outputs].split_at(l.inputs * l.outputs);
+    if l.narrow {
+        transpose(given, l.outputs, padded::<F>(l.inputs), weights);
+    } else {
+        for (to, from) in weights.chunks_exact_mut(bias.len()).zip(given.chunks_exact(l.outputs)) {
+            to[..l.outputs].copy_from_slice(from);
+        }
+    }
+    bias[..l.outputs].copy_from_slice(biases);
+}
+
+/// Writes `from` `[_ × columns]` as its transpose with rows of `stride`.
+fn transpose<F: Float>(from: &[F], columns: usize, stride: usize, to: &mut [F]) {
+    for (j, to) in to.chunks_exact_mut(stride).enumerate() {
+        for (to, from) in to.iter_mut().zip(from.chunks_exact(columns)) {
+            *to = from[j];
+        }
+    }
+}
+
+impl<F: Float> MlpTape<F> {
+    /// The outputs of the last forward and the stride between rows: output `j` of row `r` is at `r·stride + j`.
+    pub fn output(&self) -> (&[F], usize) {
+        self.layers.last().map_or((&[], 0), |l| (&l.output[..self.rows * l.stride], l.stride))
+    }
+
+    /// The outputs' tangents of the last jvp, laid out as [`output`](Self::output).
+    pub fn tangent(&self) -> (&[F], usize) {
+        self.layers.last().map_or((&[], 0), |l| (&l.tangent[..self.rows * l.stride], l.stride))
+    }
+
+    /// Adds the sums of cotangents of another tape, which worked on other rows.
+    pub fn add_cotangents(&mut self, other: &Self) {
+        for (mine, theirs) in self.layers.iter_mut().zip(&other.layers) {
+            for (m, &t) in mine.weights_cotangent.iter_mut().zip(theirs.weights_cotangent.iter()) {
+                *m += t;
+            }
+            for (m, &t) in mine.bias_cotangent.iter_mut().zip(theirs.bias_cotangent.iter()) {
+                *m += t;
+            }
+        }
+    }
+}
+
+struct Forward<'a, F> {
+    inputs: usize,
+    input: &'a [F],
+    tape: &'a mut MlpTape<F>,
+}
+
+impl<F: Float> WithSimd for Forward<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let rows = self.tape.rows;
+        let (mut x, mut stride) = (self.input, self.inputs);
+        let mut layers = self.tape.layers.iter_mut();
+        while let Some(t) = layers.next() {
+            let shape = t.layer;
+            let output = &mut t.output[..rows * t.stride];
+            if shape.narrow {
+                let padded = t.weights.len() / shape.outputs;
+                for (x, y) in x.chunks_exact(stride).zip(output.chunks_exact_mut(shape.outputs)) {
+                    for j in 0..shape.outputs {
+                        y[j] = t.bias[j] + dot(x, &t.weights[j * padded..][..padded]);
+                    }
+                }
+            } else {
+                let size = (rows, shape.inputs, t.stride);
+                product::<F, S>(simd, size, x, stride, &t.weights, Onto::Row(&t.bias), output);
+            }
+            activate(shape.activation, output);
+            (x, stride) = (&t.output[..rows * t.stride], t.stride);
+        }
+    }
+}
+
+struct Backward<'a, F> {
+    inputs: usize,
+    input: &'a [F],
+    cotangent: &'a [F],
+    tape: &'a mut MlpTape<F>,
+}
+
+impl<F: Float> WithSimd for Backward<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let MlpTape { layers, cotangents: [current, next], rows, .. } = self.tape;
+        let (mut current, mut next, rows) = (&mut current[..], &mut next[..], *rows);
+        if let Some(last) = layers.last() {
+            let outputs = last.layer.outputs;
+            current[..rows * last.stride].fill(F::ZERO);
+            for (to, from) in current.chunks_exact_mut(last.stride).zip(self.cotangent.chunks_exact(outputs)) {
+                to[..outputs].copy_from_slice(from);
+            }
+        }
+        for l in (0..layers.len()).rev() {
+            let (before, rest) = layers.split_at_mut(l);
+            let t = &mut rest[0];
+            let shape = t.layer;
+            let (x, x_stride) = match before.last() {
+                Some(below) => (&below.output[..rows * below.stride], below.stride),
+                None => (self.input, self.inputs),
+            };
+            let d = &mut current[..rows * t.stride];
+            differentiate(shape.activation, &t.output[..rows * t.stride], d);
+            let sums = &mut t.weights_cotangent;
+            if shape.narrow {
+                for row in d.chunks_exact(shape.outputs) {
+                    for j in 0..shape.outputs {
+                        t.bias_cotangent[j] += row[j];
+                    }
+                }
+                product_transposed::<F, S>(simd, (rows, shape.outputs, x_stride), d, t.stride, x, sums);
+                let size = (rows, shape.outputs, x_stride);
+                product::<F, S>(simd, size, d, t.stride, &t.weights, Onto::Zero, &mut next[..rows * x_stride]);
+            } else {
+                add_rows(d, &mut t.bias_cotangent);
+                product_transposed::<F, S>(simd, (rows, shape.inputs, t.stride), x, x_stride, d, sums);
+                if l > 0 {
+                    let size = (rows, shape.outputs, x_stride);
+                    product::<F, S>(simd, size, d, t.stride, &t.transposed, Onto::Zero, &mut next[..rows * x_stride]);
+                }
+            }
+            std::mem::swap(&mut current, &mut next);
+        }
+    }
+}
+
+struct Tangent<'a, F> {
+    inputs: usize,
+    input: &'a [F],
+    tape: &'a mut MlpTape<F>,
+}
+
+impl<F: Float> WithSimd for Tangent<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let rows = self.tape.rows;
+        let layers = &mut self.tape.layers;
+        for l in 0..layers.len() {
+            let (before, rest) = layers.split_at_mut(l);
+            let t = &mut rest[0];
+            let shape = t.layer;
+            let (x, stride, moving) = match before.last() {
+                Some(below) => {
+                    (&below.output[..rows * below.stride], below.stride, Some(&below.tangent[..rows * below.stride]))
+                }
+                None => (self.input, self.inputs, None),
+            };
+            let d = &mut t.tangent[..rows * t.stride];
+            if shape.narrow {
+                let padded = t.weights.len() / shape.outputs;
+                let moving = moving.unwrap_or(x); // a narrow layer is never the first
+                let rows = x.chunks_exact(stride).zip(moving.chunks_exact(stride));
+                for ((x, dx), d) in rows.zip(d.chunks_exact_mut(shape.outputs)) {
+                    for j in 0..shape.outputs {
+                        let weights = j * padded..(j + 1) * padded;
+                        d[j] = t.bias_tangent[j]
+                            + dot(x, &t.weights_tangent[weights.clone()])
+                            + dot(dx, &t.weights[weights]);
+                    }
+                }
+            } else {
+                let size = (rows, shape.inputs, t.stride);
+                product::<F, S>(simd, size, x, stride, &t.weights_tangent, Onto::Row(&t.bias_tangent), d);
+                if let Some(dx) = moving {
+                    product::<F, S>(simd, size, dx, stride, &t.weights, Onto::Result, d);
+                }
+            }
+            differentiate(shape.activation, &t.output[..rows * t.stride], d);
+        }
+    }
+}

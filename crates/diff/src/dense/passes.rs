@@ -1,0 +1,86 @@
+//! What happens between the products: activations, their derivatives, sums over rows, and the narrow last layer.
+
+use super::mlp::Activation;
+use crate::Float;
+
+/// Accumulators of a dot product; enough to hide the latency of the multiply-add on any processor.
+const PARALLEL: usize = 16;
+
+/// h = f(z) in place.
+#[inline(always)]
+pub(super) fn activate<F: Float>(activation: Activation, z: &mut [F]) {
+    match activation {
+        Activation::Tanh => {
+            for z in z {
+                *z = z.tanh();
+            }
+        }
+        Activation::Relu => {
+            for z in z {
+                *z = if *z > F::ZERO { *z } else { F::ZERO };
+            }
+        }
+        Activation::Identity => {}
+    }
+}
+
+/// d ← d·f'(z), with the derivative expressed by h = f(z).
+#[inline(always)]
+pub(super) fn differentiate<F: Float>(activation: Activation, h: &[F], d: &mut [F]) {
+    match activation {
+        Activation::Tanh => {
+            for (d, &h) in d.iter_mut().zip(h) {
+                *d *= (-h).mul_add(h, F::ONE);
+            }
+        }
+        Activation::Relu => {
+            for (d, &h) in d.iter_mut().zip(h) {
+                *d = if h > F::ZERO { *d } else { F::ZERO };
+            }
+        }
+        Activation::Identity => {}
+    }
+}
+
+/// sum[j] += Σ_r x[r][j] over rows of `sum.len()` numbers, a multiple of eight.
+#[inline(always)]
+pub(super) fn add_rows<F: Float>(x: &[F], sum: &mut [F]) {
+    let width = sum.len();
+    let rows = x.len() / width;
+    for (j, sum) in sum.chunks_exact_mut(8).enumerate() {
+        let mut total = [F::ZERO; 8];
+        for r in 0..rows {
+            let row = &x[r * width + 8 * j..][..8];
+            for l in 0..8 {
+                total[l] += row[l];
+            }
+        }
+        for l in 0..8 {
+            sum[l] += total[l];
+        }
+    }
+}
+
+/// x·y in a fixed order of summation.
+#[inline(always)]
+pub(super) fn dot<F: Float>(x: &[F], y: &[F]) -> F {
+    let mut sum = [F::ZERO; PARALLEL];
+    let (xs, ys) = (x.chunks_exact(PARALLEL), y.chunks_exact(PARALLEL));
+    let rest = xs.remainder().iter().zip(ys.remainder());
+    for (x, y) in xs.clone().zip(ys.clone()) {
+        for l in 0..PARALLEL {
+            sum[l] = x[l].mul_add(y[l], sum[l]);
+        }
+    }
+    for (l, (&x, &y)) in rest.enumerate() {
+        sum[l] = x.mul_add(y, sum[l]);
+    }
+    let mut half = PARALLEL / 2;
+    while half > 0 {
+        for l in 0..half {
+            sum[l] += sum[l + half];
+        }
+        half /= 2;
+    }
+    sum[0]
+}

@@ -1,0 +1,241 @@
+//! The layers of an experiment: its file, the tables of the chosen method, the command line.
+
+use std::sync::Arc;
+
+use toml::de::{DeTable, DeValue};
+
+use super::fault::{Fault, SpecErrors, shorten};
+use super::source::{Finding, Origin, Source};
+use super::suggest::{listed, nearest};
+use super::tree::{Entry, Node, Table, Value, from_toml, merge};
+
+/// The longest file that is read, bytes: 1 MiB.
+pub const LONGEST_FILE: usize = 1 << 20;
+/// The longest value of an option, bytes.
+const LONGEST_OPTION: usize = 1 << 14;
+/// The deepest key of an option.
+const DEEPEST: usize = 8;
+
+/// What one experiment was asked to be, before anything is checked. Later layers win: the file, then its
+/// `[methods.<method>]` tables, then overrides in their order.
+#[derive(Clone, Debug)]
+pub struct Layers {
+    pub(super) sources: Vec<Source>,
+    base: Table,
+    overlays: Vec<(String, Origin, Node)>,
+    overrides: Vec<Table>,
+    /// Overrides that could not be understood, told together with all other faults.
+    faults: Vec<Fault>,
+}
+
+impl Layers {
+    /// Reads a file's text; `name` is what messages call it. Fails on what is no TOML, with every such line.
+    pub fn from_text(name: &str, text: &str) -> Result<Self, SpecErrors> {
+        if text.len() > LONGEST_FILE {
+            let message = format!("{} bytes are more than an experiment may have, {LONGEST_FILE}", text.len());
+            return Err(SpecErrors::single(name, message, None));
+        }
+        let file = Source::File { name: name.into(), text: Arc::from(text) };
+        let (parsed, errors) = DeTable::parse_recoverable(text);
+        let mut faults = SpecErrors::default();
+        let mut last_line = None;
+        for error in errors {
+            let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint: None };
+            let fault = file.fault(0, &error.span().unwrap_or_default(), finding);
+            // What follows on the same line is mostly an echo.
+            if fault.line != last_line {
+                last_line = fault.line;
+                faults.push(fault);
+            }
+        }
+        faults.into_result()?;
+
+        let mut layers = Self {
+            sources: vec![file],
+            base: from_toml(parsed.get_ref(), 0),
+            overlays: Vec::new(),
+            overrides: Vec::new(),
+            faults: Vec::new(),
+        };
+        layers.split_overlays();
+        Ok(layers)
+    }
+
+    /// Gives each table under `[methods]` a source of its own, so that its faults are told apart from the file's.
+    fn split_overlays(&mut self) {
+        if !matches!(self.base.get("methods"), Some(Entry { node: Node { value: Value::Table(_), .. }, .. })) {
+            return; // absent, or no table: `resolve` says so
+        }
+        let Some(Entry { node: Node { value: Value::Table(methods), .. }, .. }) = self.base.remove("methods") else {
+            return;
+        };
+        for (name, Entry { key, mut node }) in methods {
+            // Only the three methods have a layer; the rest is refused whatever it holds.
+            if super::Method::from_name(&name).is_some() {
+                retag(&mut node, self.sources.len());
+                self.sources.push(self.sources[0].clone());
+            }
+            self.overlays.push((name, key, node));
+        }
+    }
+
+    /// `--set key=value`. A fault in it is told by [`resolve`](super::resolve), together with all others.
+    #[must_use]
+    pub fn with_override(self, key: &str, value: &str) -> Self {
+        self.with_option(format!("--set {key}={value}"), key, value)
+    }
+
+    /// `--set` with its argument as typed, `key=value`.
+    #[must_use]
+    pub fn with_assignment(mut self, assignment: &str) -> Self {
+        if let Some((key, value)) = assignment.split_once('=') {
+            return self.with_override(key.trim(), value.trim());
+        }
+        let hint = "write it as key=value, --set ppo.clip_ratio=0.1 for example".to_owned();
+        self.refuse(Source::Option(format!("--set {assignment}")), "this sets nothing: it has no `=`".into(), Some(hint));
+        self
+    }
+
+    /// An option that stands for a key, such as `--seed 3` for `seed`; `typed` is what messages show. The value is read
+    /// as TOML; what is none is taken as a text, so that `--set task.problem=reach` needs no quotes.
+    #[must_use]
+    pub fn with_option(mut self, typed: String, key: &str, value: &str) -> Self {
+        let option = Source::Option(typed);
+        if key.len() + value.len() > LONGEST_OPTION {
+            self.refuse(option, format!("an option has at most {LONGEST_OPTION} bytes"), None);
+            return self;
+        }
+        let path = match split_key(key) {
+            Ok(path) => path,
+            Err(message) => {
+                self.refuse(option, message, Some("keys look like `seed` or `ppo.clip_ratio`".into()));
+                return self;
+            }
+        };
+        let source = self.sources.len();
+        let origin = Origin { source, span: 0..0 };
+        let node = match DeValue::parse(value) {
+            Ok(parsed) => Node { origin: origin.clone(), ..Node::from_toml(&parsed, source) },
+            Err(error) if value.starts_with(['[', '{', '"', '\'']) => {
+                self.refuse(option, format!("the value is no TOML: {}", error.message()), None);
+                return self;
+            }
+            Err(_) => Node { origin: origin.clone(), value: Value::Text(value.to_owned()) },
+        };
+        self.sources.push(option);
+        let mut path = path.into_iter().rev();
+        let mut table = Table::new();
+        if let Some(last) = path.next() {
+            table.insert(last, Entry { key: origin.clone(), node });
+        }
+        for name in path {
+            let node = Node { origin: origin.clone(), value: Value::Table(table) };
+            table = Table::from([(name, Entry { key: origin.clone(), node })]);
+        }
+        self.overrides.push(table);
+        self
+    }
+
+    fn refuse(&mut self, option: Source, message: String, hint: Option<String>) {
+        let index = self.sources.len();
+        self.faults.push(option.fault(index, &(0..0), Finding { key: String::new(), message, hint }));
+        self.sources.push(option);
+    }
+
+    /// The method asked for last, as it was written.
+    pub(super) fn method(&self) -> Option<&Node> {
+        let tables = self.overrides.iter().rev().chain([&self.base]);
+        tables.filter_map(|table| table.get("method")).map(|entry| &entry.node).next()
+    }
+
+    /// The methods that have tables of their own, with the source that these are.
+    pub(super) fn overlaid(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.overlays.iter().map(|(name, _, node)| (name.as_str(), node.origin.source))
+    }
+
+    /// The tables as they are for a method.
+    pub(super) fn merged(&self, method: &str) -> Table {
+        let mut table = self.base.clone();
+        for (name, _, node) in &self.overlays {
+            if let (true, Value::Table(over)) = (name == method, &node.value) {
+                merge(&mut table, over.clone());
+            }
+        }
+        for over in &self.overrides {
+            merge(&mut table, over.clone());
+        }
+        table
+    }
+
+    /// Faults of the layers themselves: options that say nothing, tables for methods that do not exist.
+    pub(super) fn faults(&self) -> Vec<Fault> {
+        let mut faults = self.faults.clone();
+        for (name, key, node) in &self.overlays {
+            let path = format!("methods.{}", shorten(name, 60));
+            let mut add = |origin: &Origin, message: String, hint: String| {
+                let finding = Finding { key: path.clone(), message, hint: Some(hint) };
+                faults.push(self.sources[origin.source].fault(origin.source, &origin.span, finding));
+            };
+            let methods = || super::Method::ALL.iter().map(|(name, _)| *name);
+            if super::Method::from_name(name).is_none() {
+                let hint = match nearest(name, methods()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("the methods are {}", listed(methods())),
+                };
+                add(key, format!("[{path}] is for a method that does not exist"), hint);
+            } else if !matches!(node.value, Value::Table(_)) {
+                let hint = format!("write its tables as [{path}.ppo] and so on");
+                add(&node.origin, format!("{path} is {}, but has to be a table", node.shown()), hint);
+            }
+        }
+        faults
+    }
+}
+
+/// Says of a value and everything in it that it is part of another source with the same text.
+fn retag(node: &mut Node, source: usize) {
+    node.origin.source = source;
+    match &mut node.value {
+        Value::List(items) => items.iter_mut().for_each(|item| retag(item, source)),
+        Value::Table(table) => {
+            for entry in table.values_mut() {
+                entry.key.source = source;
+                retag(&mut entry.node, source);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The parts of `design.placements.stiffness[2..5]`: dots inside of brackets and quotes do not part.
+fn split_key(key: &str) -> Result<Vec<String>, String> {
+    let mut parts = vec![String::new()];
+    let (mut quote, mut depth) = (None, 0_usize);
+    for c in key.chars() {
+        match c {
+            '"' | '\'' if quote.is_none() => quote = Some(c),
+            c if quote == Some(c) => quote = None,
+            '.' if quote.is_none() && depth == 0 => {
+                parts.push(String::new());
+                continue;
+            }
+            c => {
+                depth = match c {
+                    '[' => depth + 1,
+                    ']' => depth.saturating_sub(1),
+                    _ => depth,
+                };
+                if let Some(part) = parts.last_mut() {
+                    part.push(c);
+                }
+            }
+        }
+    }
+    if quote.is_some() || parts.iter().any(|part| part.trim().is_empty()) {
+        return Err(format!("`{}` is no key", shorten(key, 60)));
+    }
+    if parts.len() > DEEPEST {
+        return Err(format!("a key of {} parts is deeper than any that exists", parts.len()));
+    }
+    Ok(parts.into_iter().map(|part| part.trim().to_owned()).collect())
+}

@@ -1,0 +1,153 @@
+//! A small declarative reader: ask a table for its keys, get a value for each, and all faults at the end.
+
+use std::cell::RefCell;
+
+use super::fault::{SpecErrors, shorten};
+use super::source::{Finding, Origin, Source};
+use super::suggest::{listed, nearest};
+use super::tree::{Node, Table, Value};
+
+/// What all sections of one experiment share: where values come from, and the faults found so far.
+pub(super) struct Reader<'r> {
+    sources: &'r [Source],
+    errors: RefCell<SpecErrors>,
+    /// Every key that some section asked for, with the section.
+    known: RefCell<Vec<(String, &'static str)>>,
+    /// Keys that nobody asked for: section, key and where it stands.
+    unknown: RefCell<Vec<(String, String, Origin)>>,
+}
+
+impl<'r> Reader<'r> {
+    pub(super) fn new(sources: &'r [Source]) -> Self {
+        Self {
+            sources,
+            errors: RefCell::default(),
+            known: RefCell::default(),
+            unknown: RefCell::default(),
+        }
+    }
+
+    /// Notes a fault; without an origin it is about what the file does not say.
+    pub(super) fn fault(&self, origin: Option<&Origin>, key: &str, message: String, hint: Option<String>) {
+        let mut errors = self.errors.borrow_mut();
+        let finding = Finding { key: key.to_owned(), message, hint };
+        let missing = Origin::default();
+        let at = origin.unwrap_or(&missing);
+        let mut fault = self.sources[at.source].fault(at.source, &at.span, finding);
+        if origin.is_none() {
+            fault.place = self.sources[at.source].name();
+            (fault.line, fault.excerpt, fault.rank) = (None, None, (0, 0, 0));
+        }
+        errors.push(fault);
+    }
+
+    /// Whether no fault was found at any of these keys, so that they can be held against each other.
+    pub(super) fn sound(&self, keys: &[&str]) -> bool {
+        !self.errors.borrow().faults().iter().any(|fault| keys.contains(&fault.key.as_str()))
+    }
+
+    /// The table under `name`, or what stands for it where the file has none.
+    pub(super) fn section<'s>(&'s self, root: &mut Section<'s>, name: &'static str) -> Section<'s> {
+        let table = match root.take(name) {
+            None => None,
+            Some(Node { value: Value::Table(table), .. }) => Some(table),
+            Some(node) => {
+                let hint = format!("write its keys below a line [{name}]");
+                let message = format!("{name} is {}, but has to be a table", node.shown());
+                self.fault(Some(&node.origin), name, message, Some(hint));
+                None
+            }
+        };
+        Section { reader: self, path: name.to_owned(), table, known: Vec::new() }
+    }
+
+    /// All faults, those of unknown keys included.
+    pub(super) fn into_errors(self) -> SpecErrors {
+        for (path, key, origin) in self.unknown.borrow().iter() {
+            let known = self.known.borrow();
+            let full = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            let place = if path.is_empty() { "at the top".to_owned() } else { format!("in [{path}]") };
+            let here = || known.iter().filter(|(section, _)| section == path).map(|(_, key)| *key);
+            let elsewhere = known.iter().find(|(_, other)| other == key).map(|(section, _)| section);
+            let hint = if self.errors.borrow().is_full() {
+                String::new()
+            } else if let Some(near) = nearest(key, here()) {
+                format!("did you mean `{near}`?")
+            } else if let Some(section) = elsewhere {
+                if section.is_empty() { format!("`{key}` belongs at the top") } else { format!("`{key}` belongs to [{section}]") }
+            } else if let Some((section, near)) =
+                known.iter().find(|(_, other)| nearest(key, [*other]).is_some())
+            {
+                format!("did you mean `{near}` of [{section}]?")
+            } else {
+                format!("the keys here are {}", listed(here()))
+            };
+            let message = format!("unknown key `{}` {place}", shorten(key, 60));
+            self.fault(Some(origin), &shorten(&full, 120), message, Some(hint));
+        }
+        self.errors.into_inner()
+    }
+}
+
+/// One table of an experiment.
+pub(super) struct Section<'r> {
+    pub(super) reader: &'r Reader<'r>,
+    path: String,
+    table: Option<&'r Table>,
+    known: Vec<&'static str>,
+}
+
+impl<'r> Section<'r> {
+    /// The top of an experiment.
+    pub(super) fn root(reader: &'r Reader<'r>, table: &'r Table) -> Self {
+        Self { reader, path: String::new(), table: Some(table), known: Vec::new() }
+    }
+
+    /// The value of a key, if there is one; the key counts as known from now on.
+    pub(super) fn take(&mut self, key: &'static str) -> Option<&'r Node> {
+        self.known.push(key);
+        self.table?.get(key).map(|entry| &entry.node)
+    }
+
+    /// The dotted path of a key.
+    pub(super) fn path(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// Where the value of a key was written.
+    pub(super) fn origin(&self, key: &str) -> Option<&'r Origin> {
+        self.table?.get(key).map(|entry| &entry.node.origin)
+    }
+
+    /// Notes a fault of the value of a key: `path.key = value` followed by `rest`.
+    pub(super) fn wrong(&self, key: &str, node: &Node, rest: &str, hint: Option<String>) {
+        let path = self.path(key);
+        self.reader.fault(Some(&node.origin), &path, format!("{path} = {} {rest}", node.shown()), hint);
+    }
+
+    /// Notes a fault between keys, at the value of this one, or at the file where the key is absent.
+    pub(super) fn clash(&self, key: &str, message: String, hint: &str) {
+        self.reader.fault(self.origin(key), &self.path(key), message, Some(hint.to_owned()));
+    }
+
+    /// Refuses a key that exists, but says nothing in this experiment.
+    pub(super) fn refuse(&mut self, key: &'static str, why: &str) {
+        self.known.push(key);
+        let Some(entry) = self.table.and_then(|table| table.get(key)) else { return };
+        let path = self.path(key);
+        let message = format!("{path} does not belong here: {why}");
+        self.reader.fault(Some(&entry.key), &path, message, Some("leave it out".into()));
+    }
+
+    /// Leaves keys that nobody asked for to be told at the end, when all known ones are known.
+    pub(super) fn finish(self) {
+        let mut known = self.reader.known.borrow_mut();
+        known.extend(self.known.iter().map(|&key| (self.path.clone(), key)));
+        let mut unknown = self.reader.unknown.borrow_mut();
+        for (key, entry) in self.table.into_iter().flatten() {
+            if !self.known.contains(&key.as_str()) {
+                unknown.push((self.path.clone(), key.clone(), entry.key.clone()));
+            }
+        }
+    }
+}

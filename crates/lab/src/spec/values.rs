@@ -1,0 +1,264 @@
+//! The kinds of values a [`Section`] can be asked for. Each returns the default where the value is absent or wrong.
+
+use std::ops::RangeInclusive;
+
+use hwasp_core::{Dimension, UnitError, parse_quantity};
+
+use super::fault::show;
+use super::section::Section;
+use super::suggest::{listed, nearest};
+use super::tree::{Node, Value};
+
+/// The greatest integer up to which every f64 is exact, 2^53.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+impl Section<'_> {
+    /// A real number.
+    pub(super) fn number(&mut self, key: &'static str, default: f64, range: RangeInclusive<f64>) -> f64 {
+        let Some(node) = self.take(key) else { return default };
+        let hint = format!("the default is {}", show(default));
+        self.checked_number(key, node, &range, hint).unwrap_or(default)
+    }
+
+    /// A real number, or none where the key is absent or "none".
+    pub(super) fn optional_number(&mut self, key: &'static str, range: RangeInclusive<f64>) -> Option<f64> {
+        let node = self.take(key).filter(|node| !is_none(node))?;
+        self.checked_number(key, node, &range, "leave it out, or write \"none\", to do without".into())
+    }
+
+    fn checked_number(&self, key: &str, node: &Node, range: &RangeInclusive<f64>, hint: String) -> Option<f64> {
+        match node.number() {
+            None => self.wrong(key, node, "is not a number", Some(hint)),
+            Some(value) if range.contains(&value) => return Some(value),
+            Some(_) => {
+                let limits = format!("is outside [{}, {}]", show(*range.start()), show(*range.end()));
+                self.wrong(key, node, &limits, Some(hint));
+            }
+        }
+        None
+    }
+
+    /// A whole number; `4e6` is one too.
+    pub(super) fn integer(&mut self, key: &'static str, default: u64, range: RangeInclusive<u64>) -> u64 {
+        let Some(node) = self.take(key) else { return default };
+        let hint = Some(format!("the default is {default}"));
+        match whole(node) {
+            None => self.wrong(key, node, "is not a whole number", hint),
+            Some(value) => match u64::try_from(value) {
+                Ok(value) if range.contains(&value) => return value,
+                _ => {
+                    let limits = format!("is outside [{}, {}]", range.start(), range.end());
+                    self.wrong(key, node, &limits, hint);
+                }
+            },
+        }
+        default
+    }
+
+    /// A count of things.
+    pub(super) fn count(&mut self, key: &'static str, default: usize, range: RangeInclusive<usize>) -> usize {
+        self.integer(key, default as u64, *range.start() as u64..=*range.end() as u64) as usize
+    }
+
+    /// True or false.
+    pub(super) fn flag(&mut self, key: &'static str, default: bool) -> bool {
+        let Some(node) = self.take(key) else { return default };
+        if let Value::Flag(value) = node.value {
+            return value;
+        }
+        self.wrong(key, node, "is neither true nor false", Some(format!("the default is {default}")));
+        default
+    }
+
+    /// A text of one line or several, of at most `most` characters.
+    pub(super) fn text(&mut self, key: &'static str, most: usize) -> Option<String> {
+        let node = self.take(key)?;
+        match &node.value {
+            Value::Text(text) if text.chars().nth(most).is_some() => {
+                self.wrong(key, node, &format!("is longer than {most} characters"), None);
+            }
+            Value::Text(text) if text.chars().any(|c| c.is_control() && c != '\n') => {
+                self.wrong(key, node, "has characters that cannot be printed", None);
+            }
+            Value::Text(text) => return Some(text.clone()),
+            _ => self.wrong(key, node, "is not a text", Some("put it into double quotes".into())),
+        }
+        None
+    }
+
+    /// One of some names; none where the key is absent or wrong.
+    pub(super) fn choice<T: Copy>(&mut self, key: &'static str, choices: &[(&'static str, T)]) -> Option<T> {
+        let node = self.take(key)?;
+        self.chosen(key, node, choices)
+    }
+
+    /// The same for a value at hand.
+    pub(super) fn chosen<T: Copy>(&self, key: &str, node: &Node, choices: &[(&'static str, T)]) -> Option<T> {
+        let names = || choices.iter().map(|(name, _)| *name);
+        let typed = if let Value::Text(text) = &node.value { text.as_str() } else { "" };
+        if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == typed) {
+            return Some(*choice);
+        }
+        let hint = nearest(typed, names()).map(|near| format!("did you mean \"{near}\"?"));
+        self.wrong(key, node, &format!("is none of {}", listed(names())), hint);
+        None
+    }
+
+    /// A quantity such as `"3 N"`; the default, the range and the result are in SI.
+    pub(super) fn quantity(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        default: f64,
+        range: &RangeInclusive<f64>,
+    ) -> f64 {
+        let Some(node) = self.take(key) else { return default };
+        self.checked_quantity(key, node, dimension, range).unwrap_or(default)
+    }
+
+    /// A quantity, or none where the key is absent or "none".
+    pub(super) fn optional_quantity(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        range: &RangeInclusive<f64>,
+    ) -> Option<f64> {
+        let node = self.take(key).filter(|node| !is_none(node))?;
+        self.checked_quantity(key, node, dimension, range)
+    }
+
+    /// A quantity at hand, in SI, if it is one of the dimension and inside of the range.
+    pub(super) fn checked_quantity(
+        &self,
+        key: &str,
+        node: &Node,
+        dimension: Dimension,
+        range: &RangeInclusive<f64>,
+    ) -> Option<f64> {
+        let example = with_unit(range.start().max(range.end().min(1.0)), dimension);
+        let units = dimension.symbols().join(", ");
+        let hint = Some(match dimension {
+            Dimension::None => "it is a pure number".to_owned(),
+            _ => format!("write it like \"{example}\", in one of the units {units}"),
+        });
+        let value = match &node.value {
+            Value::Text(text) => match parse_quantity(text, dimension) {
+                Ok(value) => value,
+                Err(error) => {
+                    let rest = match error {
+                        UnitError::Number { .. } => "does not begin with a number",
+                        UnitError::Unknown { .. } => "has a unit that is not known",
+                        UnitError::Dimension { .. } => "has a unit that measures something else",
+                        UnitError::Missing { .. } => "names no unit",
+                    };
+                    self.wrong(key, node, rest, hint);
+                    return None;
+                }
+            },
+            _ => match node.number() {
+                Some(value) if dimension == Dimension::None => value,
+                Some(_) => {
+                    self.wrong(key, node, "names no unit", hint);
+                    return None;
+                }
+                None => {
+                    self.wrong(key, node, "is not a quantity", hint);
+                    return None;
+                }
+            },
+        };
+        if range.contains(&value) {
+            return Some(value);
+        }
+        let (lo, hi) = (with_unit(*range.start(), dimension), with_unit(*range.end(), dimension));
+        self.wrong(key, node, &format!("is outside [{lo}, {hi}]"), None);
+        None
+    }
+
+    /// As many real numbers as said.
+    pub(super) fn numbers(
+        &mut self,
+        key: &'static str,
+        default: f64,
+        length: usize,
+        range: &RangeInclusive<f64>,
+    ) -> Vec<f64> {
+        let default = vec![default; length];
+        let Some(node) = self.take(key) else { return default };
+        let hint = || Some(format!("the default is {}", show_list(&default)));
+        match &node.value {
+            Value::List(items) if items.len() == length => {
+                let checked = items.iter().map(|item| self.checked_number(key, item, range, hint().unwrap_or_default()));
+                // All items are looked at before the first wrong one ends it.
+                checked.collect::<Vec<_>>().into_iter().collect::<Option<_>>().unwrap_or(default)
+            }
+            Value::List(_) => {
+                self.wrong(key, node, &format!("has to have {length}: one per observation"), hint());
+                default
+            }
+            _ => {
+                self.wrong(key, node, "is not a list of numbers", hint());
+                default
+            }
+        }
+    }
+
+    /// Sizes of layers.
+    pub(super) fn counts(
+        &mut self,
+        key: &'static str,
+        default: &[usize],
+        most: usize,
+        range: &RangeInclusive<usize>,
+    ) -> Vec<usize> {
+        let Some(node) = self.take(key) else { return default.to_vec() };
+        let hint = || Some(format!("the default is {default:?}"));
+        match &node.value {
+            Value::List(items) if items.len() <= most => {
+                let mut counts = Vec::with_capacity(items.len());
+                for item in items {
+                    match whole(item).map(usize::try_from) {
+                        Some(Ok(count)) if range.contains(&count) => counts.push(count),
+                        None => self.wrong(key, item, "is not a whole number", hint()),
+                        Some(_) => {
+                            let limits = format!("is outside [{}, {}]", range.start(), range.end());
+                            self.wrong(key, item, &limits, hint());
+                        }
+                    }
+                }
+                counts
+            }
+            Value::List(_) => {
+                self.wrong(key, node, &format!("has more than the {most} that are possible"), hint());
+                default.to_vec()
+            }
+            _ => {
+                self.wrong(key, node, "is not a list of whole numbers", hint());
+                default.to_vec()
+            }
+        }
+    }
+}
+
+/// Whether a value says that there is none.
+fn is_none(node: &Node) -> bool {
+    matches!(&node.value, Value::Text(text) if text == "none")
+}
+
+/// A whole number, also where it is written as a real one.
+fn whole(node: &Node) -> Option<i64> {
+    match node.value {
+        Value::Integer(value) => Some(value),
+        Value::Float(value) if value.fract() == 0.0 && value.abs() <= EXACT => Some(value as i64),
+        _ => None,
+    }
+}
+
+/// An SI value with its unit, for messages and files: both read it back to the same bits.
+pub(super) fn with_unit(value: f64, dimension: Dimension) -> String {
+    format!("{} {}", show(value), dimension.si()).trim_end().to_owned()
+}
+
+fn show_list(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(|&v| show(v)).collect::<Vec<_>>().join(", "))
+}

@@ -1,0 +1,203 @@
+//! Figures over a handful of runs: interquartile mean, bootstrap intervals, quantiles.
+//!
+//! A few seeds are all that one has, so results are given as an interquartile mean with a bootstrap interval over the
+//! runs, as Agarwal et al. argue in "Deep reinforcement learning at the edge of the statistical precipice" (NeurIPS
+//! 2021). Everything depends on the values alone, not on the order they come in, and is the same on every machine.
+
+use hwasp_core::Stream;
+use rand::Rng;
+use thiserror::Error;
+
+/// Why a figure cannot be computed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StatsError {
+    /// There are no values at all.
+    #[error("a statistic needs at least one value, and there is none")]
+    Empty,
+    /// A value that cannot be averaged.
+    #[error("value {index} is {value}; only finite values can be summarised: leave out the run it came from, or repeat it")]
+    NotFinite {
+        /// Its place, from 0.
+        index: usize,
+        /// What it is.
+        value: f64,
+    },
+    /// A confidence outside the open interval from 0 to 1.
+    #[error("a confidence of {0} is outside (0, 1); write 0.95 for 95 %")]
+    Confidence(f64),
+    /// Too few or too many resamples.
+    #[error("{0} resamples are outside [1, {max}]; 2000 are usual", max = Bootstrap::MOST_RESAMPLES)]
+    Resamples(usize),
+    /// The statistic gave no number on a resample.
+    #[error("the statistic gives {0} on a resample of the values, so it has no interval")]
+    Statistic(f64),
+}
+
+/// At least one value, all finite, in ascending order. Units are those of the values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    sorted: Vec<f64>,
+}
+
+impl Sample {
+    /// Checks the values and sorts them.
+    pub fn new(values: &[f64]) -> Result<Self, StatsError> {
+        if values.is_empty() {
+            return Err(StatsError::Empty);
+        }
+        if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+            return Err(StatsError::NotFinite { index, value: values[index] });
+        }
+        let mut sorted = values.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        Ok(Self { sorted })
+    }
+
+    /// The values in ascending order, at least one.
+    pub fn sorted(&self) -> &[f64] {
+        &self.sorted
+    }
+
+    /// The arithmetic mean.
+    pub fn mean(&self) -> f64 {
+        mean_of(&self.sorted)
+    }
+
+    /// The mean of what is left when a quarter of the values, rounded down to a whole number of values, is cut off at
+    /// each end: `scipy.stats.trim_mean(values, 0.25)`, and so the figure `rliable` reports. With fewer than four
+    /// values nothing is cut.
+    pub fn interquartile_mean(&self) -> f64 {
+        let cut = self.sorted.len() / 4;
+        mean_of(&self.sorted[cut..self.sorted.len() - cut])
+    }
+
+    /// The standard error of the mean (with `n - 1` degrees of freedom); one value has none.
+    pub fn standard_error(&self) -> Option<f64> {
+        let n = self.sorted.len();
+        if n < 2 {
+            return None;
+        }
+        let mean = self.mean();
+        let squares: f64 = self.sorted.iter().map(|v| (v - mean).powi(2)).sum();
+        Some((squares / (n - 1) as f64 / n as f64).sqrt())
+    }
+
+    /// The quantile at `q`, clamped to [0, 1], linear between neighbouring values (`numpy.quantile`'s default).
+    pub fn quantile(&self, q: f64) -> f64 {
+        let last = self.sorted.len() - 1;
+        let place = q.clamp(0.0, 1.0) * last as f64;
+        // A NaN casts to 0, so the index stays inside whatever is asked for.
+        let below = (place.floor() as usize).min(last);
+        let above = (below + 1).min(last);
+        let (low, high) = (self.sorted[below], self.sorted[above]);
+        low + (high - low) * (place - below as f64)
+    }
+
+    /// The smallest value.
+    pub fn min(&self) -> f64 {
+        self.sorted[0]
+    }
+
+    /// The largest value.
+    pub fn max(&self) -> f64 {
+        self.sorted[self.sorted.len() - 1]
+    }
+}
+
+/// The arithmetic mean.
+pub fn mean(values: &[f64]) -> Result<f64, StatsError> {
+    Sample::new(values).map(|s| s.mean())
+}
+
+/// See [`Sample::interquartile_mean`].
+pub fn interquartile_mean(values: &[f64]) -> Result<f64, StatsError> {
+    Sample::new(values).map(|s| s.interquartile_mean())
+}
+
+/// An interval, ends included, in the unit of the values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+}
+
+/// Settings of a percentile bootstrap (Efron and Tibshirani, "An introduction to the bootstrap", chapter 13).
+///
+/// | setting | default | what it does | range |
+/// |---|---|---|---|
+/// | `resamples` | 2000 | how many resamples the percentiles are taken over | 1 to 1,000,000 |
+/// | `confidence` | 0.95 | the share of resamples inside the interval | between 0 and 1 |
+///
+/// With very few values the interval is too narrow: at 20 normal values a nominal 95 % covers about 93 %, at 5 about 83 %.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bootstrap {
+    /// How many resamples the percentiles are taken over.
+    pub resamples: usize,
+    /// The share of resamples inside the interval.
+    pub confidence: f64,
+}
+
+impl Default for Bootstrap {
+    fn default() -> Self {
+        Self { resamples: 2000, confidence: 0.95 }
+    }
+}
+
+impl Bootstrap {
+    /// More resamples than this are a slip, not a wish.
+    pub const MOST_RESAMPLES: usize = 1_000_000;
+
+    /// The percentile interval of `statistic` over `sample`. The same values and the same stream give the same interval.
+    pub fn interval(
+        &self,
+        sample: &Sample,
+        statistic: impl Fn(&Sample) -> f64,
+        stream: &mut Stream,
+    ) -> Result<Interval, StatsError> {
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(StatsError::Confidence(self.confidence));
+        }
+        if !(1..=Self::MOST_RESAMPLES).contains(&self.resamples) {
+            return Err(StatsError::Resamples(self.resamples));
+        }
+        let mut drawn = sample.clone();
+        let mut figures = Vec::with_capacity(self.resamples);
+        for _ in 0..self.resamples {
+            for place in &mut drawn.sorted {
+                *place = sample.sorted[index_below(sample.sorted.len(), stream)];
+            }
+            drawn.sorted.sort_unstable_by(f64::total_cmp);
+            let figure = statistic(&drawn);
+            if !figure.is_finite() {
+                return Err(StatsError::Statistic(figure));
+            }
+            figures.push(figure);
+        }
+        let figures = Sample::new(&figures)?;
+        let tail = (1.0 - self.confidence) / 2.0;
+        Ok(Interval { low: figures.quantile(tail), high: figures.quantile(1.0 - tail) })
+    }
+}
+
+/// The 95 % percentile-bootstrap interval of `statistic` with 2000 resamples; [`Bootstrap`] has other settings.
+pub fn bootstrap_interval(
+    values: &[f64],
+    statistic: impl Fn(&Sample) -> f64,
+    stream: &mut Stream,
+) -> Result<Interval, StatsError> {
+    Bootstrap::default().interval(&Sample::new(values)?, statistic, stream)
+}
+
+/// A uniform index in `0..n`, by the high half of a product: the same on every machine, biased by less than n / 2^64.
+fn index_below(n: usize, stream: &mut Stream) -> usize {
+    ((u128::from(stream.next_u64()) * n as u128) >> 64) as usize
+}
+
+/// The mean of at least one value; values near the largest number are divided before they are added.
+fn mean_of(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let sum: f64 = values.iter().sum();
+    if sum.is_finite() { sum / n } else { values.iter().map(|v| v / n).sum() }
+}

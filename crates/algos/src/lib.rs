@@ -1,1 +1,14 @@
-//! placeholder
+//! Learners: generalised advantages, value baselines, PPO. They see policies and batches, never an environment.
+
+mod adam;
+mod baseline;
+mod gae;
+mod learner;
+mod minibatch;
+mod ppo;
+
+pub use adam::{Adam, AdamConfig};
+pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig};
+pub use gae::{Advantages, advantages, normalize};
+pub use learner::{LearnError, Learner, UpdateMetrics};
+pub use ppo::{Ppo, PpoConfig, PpoSettings};

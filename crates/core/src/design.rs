@@ -131,9 +131,7 @@ impl DesignSpace {
     pub fn names(&self) -> Vec<String> {
         self.groups
             .iter()
-            .flat_map(|g| {
-                (0..g.count).map(|i| if g.count == 1 { g.name.clone() } else { format!("{}[{i}]", g.name) })
-            })
+            .flat_map(|g| (0..g.count).map(|i| if g.count == 1 { g.name.clone() } else { format!("{}[{i}]", g.name) }))
             .collect()
     }
 

@@ -6,7 +6,7 @@ mod check_env;
 mod design;
 mod environment;
 mod executor;
-mod gaussian;
+pub mod gaussian;
 mod hardware;
 mod placement;
 mod policy;
@@ -16,11 +16,11 @@ mod units;
 
 pub use check_env::{EnvFault, check_env};
 pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
-pub use environment::{
-    CommandPort, End, Environment, EnvSpec, MakeEnvironment, Plant, Port, Robot, Step, Task,
-};
+pub use environment::{CommandPort, End, EnvSpec, Environment, MakeEnvironment, Plant, Port, Robot, Step, Task};
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Law, Ports};
 pub use placement::{Placement, PlacementError};
+pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows};
+pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity};

@@ -21,13 +21,12 @@ pub struct GradCheckSettings {
 
 impl Default for GradCheckSettings {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-6,
-            dot_product_tolerance: 1e-12,
-            first_step: 1e-2,
-        }
+        Self { tolerance: 1e-6, dot_product_tolerance: 1e-12, first_step: 1e-2 }
     }
 }
+
+/// Derivatives much smaller than this cannot be told from rounding noise (in SI units of the output over the input).
+const SMALLEST_SCALE: f64 = 1e-9;
 
 /// What [`gradcheck`] found where everything passed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,9 +68,7 @@ pub enum GradCheckError {
         tolerance: f64,
     },
     /// A value or derivative is infinite or NaN.
-    #[error(
-        "d({output})/d({input}) in row {row}, at {input} = {at:e}: value {value:e}, derivative {program:e}"
-    )]
+    #[error("d({output})/d({input}) in row {row}, at {input} = {at:e}: value {value:e}, derivative {program:e}")]
     NotFinite {
         /// The name of the output.
         output: String,
@@ -87,9 +84,7 @@ pub enum GradCheckError {
         program: f64,
     },
     /// The reverse and the tangent pass are not transposes of each other.
-    #[error(
-        "w'(Jv) = {tangent:e} but (J'w)'v = {reverse:e}; relative gap {error:.1e} is above {tolerance:.1e}"
-    )]
+    #[error("w'(Jv) = {tangent:e} but (J'w)'v = {reverse:e}; relative gap {error:.1e} is above {tolerance:.1e}")]
     DotProduct {
         /// wᵀ(Jv), from the tangent pass.
         tangent: f64,
@@ -105,9 +100,10 @@ pub enum GradCheckError {
 /// Checks the derivatives of `program` in `f64` at `uniforms` (U values) and `columns` (C × R values, column-major with
 /// stride R; one or more rows R).
 ///
-/// Every entry of the Jacobian is compared with Ridders' extrapolation of central differences, on the scale of the larger
-/// of the two or a thousandth of output/input, whichever is larger. Choose points away from the kinks of `abs`, `min`,
-/// `max` and `clamp`: there finite differences are right to disagree.
+/// Every entry of the Jacobian is compared with Ridders' extrapolation of central differences. The difference is taken
+/// relative to the larger of the two; where both are tiny, relative to a thousandth of what the output varies by over the
+/// size of the input, and never less than 1e-9, below which finite differences are noise. Choose points away from the
+/// kinks of `abs`, `min`, `max` and `clamp`: there finite differences are right to disagree.
 ///
 /// # Panics
 /// If there is not one value per uniform input, or the columns do not hold whole rows.
@@ -119,11 +115,7 @@ pub fn gradcheck(
 ) -> Result<GradCheck, GradCheckError> {
     let width = program.column_names().len();
     let rows = columns.len().checked_div(width).unwrap_or(1);
-    assert!(
-        rows > 0 && rows * width == columns.len(),
-        "{} values for {width} columns",
-        columns.len()
-    );
+    assert!(rows > 0 && rows * width == columns.len(), "{} values for {width} columns", columns.len());
     let mut report = GradCheck::default();
     for row in 0..rows {
         let mut point = uniforms.to_vec();
@@ -150,9 +142,12 @@ fn check_row(
     evaluate(program, uniforms, point, &mut tape, &mut value);
     for (o, output) in program.output_names().iter().enumerate() {
         let gradient = reverse(program, uniforms, point, o, &mut tape);
+        // How much of the output is at stake: rounding noise is judged against it.
+        let variation =
+            gradient.iter().zip(point).map(|(slope, &x)| slope.abs() * size(x)).fold(value[o].abs(), f64::max);
         let names = program.uniform_names().iter().chain(program.column_names());
         for (j, input) in names.enumerate() {
-            let size = point[j].abs().max(1e-2);
+            let size = size(point[j]);
             let numeric = ridders(settings.first_step * size, |step| {
                 let mut out = vec![0.0; outputs];
                 let mut at = |x: f64| {
@@ -168,24 +163,10 @@ fn check_row(
             let (at, exact) = (point[j], gradient[j]);
             let (input, output) = (input.clone(), output.clone());
             if !(value[o].is_finite() && exact.is_finite()) {
-                return Err(GradCheckError::NotFinite {
-                    output,
-                    input,
-                    row,
-                    at,
-                    value: value[o],
-                    program: exact,
-                });
+                return Err(GradCheckError::NotFinite { output, input, row, at, value: value[o], program: exact });
             }
-            let scale = exact
-                .abs()
-                .max(numeric.abs())
-                .max(1e-3 * value[o].abs() / size);
-            let error = if exact == numeric {
-                0.0
-            } else {
-                (exact - numeric).abs() / scale
-            };
+            let scale = (exact.abs().max(numeric.abs())).max(1e-3 * variation / size).max(SMALLEST_SCALE);
+            let error = if exact == numeric { 0.0 } else { (exact - numeric).abs() / scale };
             // Written so that a NaN from the finite differences fails too.
             if !matches!(error.partial_cmp(&settings.tolerance), Some(o) if o.is_le()) {
                 let tolerance = settings.tolerance;
@@ -210,25 +191,18 @@ fn check_row(
     Ok(())
 }
 
-fn evaluate(
-    program: &Program,
-    uniforms: usize,
-    point: &[f64],
-    tape: &mut ProgramTape<f64>,
-    out: &mut [f64],
-) {
+/// The size of an input, which steps are relative to.
+fn size(x: f64) -> f64 {
+    x.abs().max(1e-2)
+}
+
+fn evaluate(program: &Program, uniforms: usize, point: &[f64], tape: &mut ProgramTape<f64>, out: &mut [f64]) {
     program.bind(&point[..uniforms], tape);
     program.forward(&point[uniforms..], 1, 1, tape, out, 1);
 }
 
 /// The gradient of output `o` by uniforms, then columns, in the one row of `point`.
-fn reverse(
-    program: &Program,
-    uniforms: usize,
-    point: &[f64],
-    o: usize,
-    tape: &mut ProgramTape<f64>,
-) -> Vec<f64> {
+fn reverse(program: &Program, uniforms: usize, point: &[f64], o: usize, tape: &mut ProgramTape<f64>) -> Vec<f64> {
     let mut cotangent = vec![0.0; program.output_names().len()];
     let mut gradient = vec![0.0; point.len()];
     evaluate(program, uniforms, point, tape, &mut cotangent);
@@ -255,9 +229,7 @@ fn ridders(first: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
         for j in 1..=i {
             current[j] = (current[j - 1] * factor - previous[j - 1]) / (factor - 1.0);
             factor *= SHRINK * SHRINK;
-            let error = (current[j] - current[j - 1])
-                .abs()
-                .max((current[j] - previous[j - 1]).abs());
+            let error = (current[j] - current[j - 1]).abs().max((current[j] - previous[j - 1]).abs());
             if error < best_error {
                 (best, best_error) = (current[j], error);
             }
@@ -280,23 +252,10 @@ fn check_dot_product(
     let mut out = vec![0.0; program.output_names().len() * rows];
     let mut by_column = vec![0.0; columns.len()];
     let mut by_uniform = vec![0.0; uniforms.len()];
-    let (w, v_uniform, v_column) = (
-        irregular(out.len(), 1),
-        irregular(uniforms.len(), 2),
-        irregular(columns.len(), 3),
-    );
+    let (w, v_uniform, v_column) = (irregular(out.len(), 1), irregular(uniforms.len(), 2), irregular(columns.len(), 3));
     program.bind(uniforms, &mut tape);
     program.forward(columns, rows, rows, &mut tape, &mut out, rows);
-    program.vjp(
-        columns,
-        rows,
-        rows,
-        &w,
-        rows,
-        &mut tape,
-        &mut by_column,
-        rows,
-    );
+    program.vjp(columns, rows, rows, &w, rows, &mut tape, &mut by_column, rows);
     program.vjp_uniform(&mut tape, &mut by_uniform);
     program.bind_tangent(&v_uniform, &mut tape);
     program.jvp(columns, &v_column, rows, rows, &mut tape, &mut out, rows);
@@ -304,35 +263,22 @@ fn check_dot_product(
     let ((a, size_a), (b, size_b)) = (dot(&by_uniform, &v_uniform), dot(&by_column, &v_column));
     let reverse = a + b;
     let gap = (tangent - reverse).abs();
-    let error = if gap == 0.0 {
-        0.0
-    } else {
-        gap / size.max(size_a + size_b)
-    };
+    let error = if gap == 0.0 { 0.0 } else { gap / size.max(size_a + size_b) };
     let tolerance = settings.dot_product_tolerance;
     if matches!(error.partial_cmp(&tolerance), Some(o) if o.is_le()) {
         Ok(error)
     } else {
-        Err(GradCheckError::DotProduct {
-            tangent,
-            reverse,
-            error,
-            tolerance,
-        })
+        Err(GradCheckError::DotProduct { tangent, reverse, error, tolerance })
     }
 }
 
 /// The dot product, and the sum of the magnitudes of its terms.
 fn dot(a: &[f64], b: &[f64]) -> (f64, f64) {
-    a.iter().zip(b).fold((0.0, 0.0), |(sum, size), (a, b)| {
-        (sum + a * b, size + (a * b).abs())
-    })
+    a.iter().zip(b).fold((0.0, 0.0), |(sum, size), (a, b)| (sum + a * b, size + (a * b).abs()))
 }
 
 /// Fixed numbers without pattern in (-1, 1): the golden-ratio sequence.
 fn irregular(len: usize, salt: usize) -> Vec<f64> {
     let golden = 0.618_033_988_749_894_9;
-    (1..=len)
-        .map(|i| 2.0 * ((i as f64 + 0.37 * salt as f64) * golden).fract() - 1.0)
-        .collect()
+    (1..=len).map(|i| 2.0 * ((i as f64 + 0.37 * salt as f64) * golden).fract() - 1.0).collect()
 }

@@ -87,16 +87,9 @@ impl Program {
     {
         let tape = Tape::default();
         let outputs: Vec<_> = {
-            let u: Vec<_> = (0..uniforms.len())
-                .map(|i| tape.push(Node::Uniform(i)))
-                .collect();
-            let c: Vec<_> = (0..columns.len())
-                .map(|i| tape.push(Node::Column(i)))
-                .collect();
-            law(&u, &c)
-                .into_iter()
-                .map(|(name, value)| (name, value.arg()))
-                .collect()
+            let u: Vec<_> = (0..uniforms.len()).map(|i| tape.push(Node::Uniform(i))).collect();
+            let c: Vec<_> = (0..columns.len()).map(|i| tape.push(Node::Column(i))).collect();
+            law(&u, &c).into_iter().map(|(name, value)| (name, value.arg())).collect()
         };
         let (uniform_names, column_names) = (names(uniforms), names(columns));
         lower::lower(&tape.into_nodes(), uniform_names, column_names, outputs)
@@ -197,8 +190,7 @@ impl Program {
                 Instruction::Unary(op, a) => op.pull(tape.same_tangent(a), tape.same(a), value),
                 Instruction::Binary(op, a, b) => {
                     let (x, y) = (tape.same(a), tape.same(b));
-                    op.pull_a(tape.same_tangent(a), x, y, value)
-                        + op.pull_b(tape.same_tangent(b), x, y, value)
+                    op.pull_a(tape.same_tangent(a), x, y, value) + op.pull_b(tape.same_tangent(b), x, y, value)
                 }
             };
             tape.uniform_tangents[inputs + k] = tangent;
@@ -214,8 +206,7 @@ impl Program {
         let inputs = self.uniform_names.len();
         assert_eq!(grad.len(), inputs, "one gradient entry per uniform input");
         tape.check(self);
-        tape.uniform_scratch
-            .copy_from_slice(&tape.uniform_cotangents);
+        tape.uniform_scratch.copy_from_slice(&tape.uniform_cotangents);
         for (k, instruction) in self.uniform_code.iter().enumerate().rev() {
             let g = tape.uniform_scratch[inputs + k];
             let value = tape.uniforms[inputs + k];
@@ -243,18 +234,7 @@ fn names(list: &[impl AsRef<str>]) -> Vec<String> {
 
 /// Checks the shape of a column-major batch, where `what` names it in the message.
 fn check_batch<F>(what: &str, data: &[F], columns: usize, stride: usize, rows: usize) {
-    assert!(
-        columns < 2 || stride >= rows,
-        "{what}: the stride {stride} is less than the {rows} rows"
-    );
-    let needed = if columns == 0 {
-        0
-    } else {
-        (columns - 1) * stride + rows
-    };
-    assert!(
-        data.len() >= needed,
-        "{what}: {} values given, {needed} needed",
-        data.len()
-    );
+    assert!(columns < 2 || stride >= rows, "{what}: the stride {stride} is less than the {rows} rows");
+    let needed = if columns == 0 { 0 } else { (columns - 1) * stride + rows };
+    assert!(data.len() >= needed, "{what}: {} values given, {needed} needed", data.len());
 }

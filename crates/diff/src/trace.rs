@@ -97,9 +97,7 @@ impl<'t> Var<'t> {
         match self.0 {
             Value::Constant(value) => Self::constant(op.value(value)),
             Value::Traced(tape, index) => match (op, tape.node(index)) {
-                (Unary::Neg, Node::Unary(Unary::Neg, Arg::Node(inner))) => {
-                    Self(Value::Traced(tape, inner))
-                }
+                (Unary::Neg, Node::Unary(Unary::Neg, Arg::Node(inner))) => Self(Value::Traced(tape, inner)),
                 _ => tape.push(Node::Unary(op, self.arg())),
             },
         }
@@ -109,14 +107,10 @@ impl<'t> Var<'t> {
         let tape: &'t Tape = match (self.0, other.0) {
             (Value::Constant(a), Value::Constant(b)) => return Self::constant(op.value(a, b)),
             (Value::Traced(a, _), Value::Traced(b, _)) => {
-                assert!(
-                    std::ptr::eq(a, b),
-                    "numbers of two traces must not be mixed"
-                );
+                assert!(std::ptr::eq(a, b), "numbers of two traces must not be mixed");
                 a
             }
-            (Value::Traced(tape, _), Value::Constant(_))
-            | (Value::Constant(_), Value::Traced(tape, _)) => tape,
+            (Value::Traced(tape, _), Value::Constant(_)) | (Value::Constant(_), Value::Traced(tape, _)) => tape,
         };
         match op {
             Binary::Add if other.is_constant(-0.0) => self,

@@ -61,12 +61,7 @@ fn traced(code: &[(usize, usize, usize)]) -> Program {
     Program::trace(&["u0", "u1", "u2"], &["c0", "c1"], |u, c| {
         let inputs: Vec<_> = u.iter().chain(c).copied().collect();
         let [last, all] = law(code, &inputs, |_| {});
-        vec![
-            ("last".into(), last),
-            ("all".into(), all),
-            ("u1".into(), u[1]),
-            ("c0".into(), c[0]),
-        ]
+        vec![("last".into(), last), ("all".into(), all), ("u1".into(), u[1]), ("c0".into(), c[0])]
     })
 }
 
@@ -75,19 +70,11 @@ fn code() -> impl Strategy<Value = Vec<(usize, usize, usize)>> {
 }
 
 fn numbers(count: usize) -> impl Strategy<Value = Vec<f64>> {
-    prop::collection::vec(
-        prop_oneof![8 => -1.5..1.5, 1 => Just(0.0), 1 => Just(-0.0)],
-        count,
-    )
+    prop::collection::vec(prop_oneof![8 => -1.5..1.5, 1 => Just(0.0), 1 => Just(-0.0)], count)
 }
 
 /// The distance to the nearest kink and the largest value met.
-fn conditions(
-    code: &[(usize, usize, usize)],
-    uniforms: &[f64],
-    columns: &[f64],
-    rows: usize,
-) -> (f64, f64) {
+fn conditions(code: &[(usize, usize, usize)], uniforms: &[f64], columns: &[f64], rows: usize) -> (f64, f64) {
     let (mut gap, mut largest) = (f64::INFINITY, 0.0_f64);
     for row in 0..rows {
         let inputs = [uniforms, &[columns[row], columns[rows + row]]].concat();
@@ -129,6 +116,7 @@ proptest! {
 
     #[test]
     fn a_row_does_not_depend_on_the_others(code in code(), uniforms in numbers(3), columns in numbers(2 * ROWS)) {
+        let (_, largest) = conditions(&code, &uniforms, &columns, ROWS);
         let program = traced(&code);
         let narrow = |list: &[f64]| list.iter().map(|&x| x as f32).collect::<Vec<_>>();
         let (uniforms, columns, w) = (narrow(&uniforms), narrow(&columns), narrow(&vec![0.7; 4 * ROWS]));
@@ -158,8 +146,7 @@ proptest! {
         let (mut whole, mut single) = ([0.0; 3], [0.0; 3]);
         program.vjp_uniform(&mut tape, &mut whole);
         program.vjp_uniform(&mut one, &mut single);
-        let (_, largest) = conditions(&code, &[0.0; 3], &[0.0; 2], 1);
-        prop_assume!(largest < 1e3 && whole.iter().all(|g| g.is_finite()));
+        prop_assume!(largest < 1e2);
         for u in 0..3 {
             let scale = 1.0 + whole.iter().map(|g: &f32| g.abs()).sum::<f32>();
             prop_assert!((whole[u] - single[u]).abs() < 1e-2 * scale, "{:?} {:?}", whole, single);
@@ -245,21 +232,13 @@ fn every_primitive_differentiates() {
         for (a, b) in [(0, 1), (0, 3), (3, 0), (3, 4)] {
             let program = Program::trace(&["u0", "u1", "u2"], &["c0", "c1"], |u, c| {
                 let inputs = [u[0], u[1], u[2], c[0], c[1]];
-                vec![(
-                    "y".into(),
-                    operation(code, inputs[a], inputs[b], &mut |_| {}),
-                )]
+                vec![("y".into(), operation(code, inputs[a], inputs[b], &mut |_| {}))]
             });
             for columns in [[0.7, -0.8], [-0.9, 0.1], [0.2, 0.6]] {
                 let uniforms = [-0.55, 0.25, 0.0];
-                let report =
-                    gradcheck(&program, &uniforms, &columns, &GradCheckSettings::default());
-                let report =
-                    report.unwrap_or_else(|error| panic!("operation {code} on {a}, {b}: {error}"));
-                assert!(
-                    report.max_relative_error < 1e-8,
-                    "operation {code} on {a}, {b}: {report:?}"
-                );
+                let report = gradcheck(&program, &uniforms, &columns, &GradCheckSettings::default());
+                let report = report.unwrap_or_else(|error| panic!("operation {code} on {a}, {b}: {error}"));
+                assert!(report.max_relative_error < 1e-8, "operation {code} on {a}, {b}: {report:?}");
             }
         }
     }
@@ -269,11 +248,7 @@ fn every_primitive_differentiates() {
 #[test]
 fn conventions_at_kinks() {
     let program = Program::trace(&[] as &[&str], &["x", "y"], |_, c| {
-        vec![
-            ("abs".into(), c[0].abs()),
-            ("min".into(), c[0].min(c[1])),
-            ("max".into(), c[0].max(c[1])),
-        ]
+        vec![("abs".into(), c[0].abs()), ("min".into(), c[0].min(c[1])), ("max".into(), c[0].max(c[1]))]
     });
     let mut tape = program.tape::<f64>(1);
     let at = [0.0, 0.0];
@@ -295,15 +270,9 @@ fn work_is_counted() {
         let stiffness = u[0].sigmoid() * 100.0 + u[1].sigmoid() * 100.0;
         let _unused = (c[0] * u[0]).exp();
         let again = u[0].sigmoid() * 100.0 + u[1].sigmoid() * 100.0;
-        vec![
-            ("force".into(), -(stiffness * c[0])),
-            ("stiffness".into(), again),
-        ]
+        vec![("force".into(), -(stiffness * c[0])), ("stiffness".into(), again)]
     });
-    assert_eq!(
-        (program.uniform_instructions(), program.row_instructions()),
-        (5, 2)
-    );
+    assert_eq!((program.uniform_instructions(), program.row_instructions()), (5, 2));
     assert_eq!(program.uniform_names(), ["k0", "k1"]);
     assert_eq!(program.column_names(), ["y"]);
     assert_eq!(program.output_names(), ["force", "stiffness"]);
@@ -314,12 +283,7 @@ fn work_is_counted() {
 fn outputs_of_every_kind() {
     let program = Program::trace(&["u"], &["c"], |u, c| {
         let constant = <hwasp_diff::Var<'_> as Scalar>::constant(4.0);
-        vec![
-            ("constant".into(), constant),
-            ("uniform".into(), u[0]),
-            ("column".into(), c[0]),
-            ("again".into(), c[0]),
-        ]
+        vec![("constant".into(), constant), ("uniform".into(), u[0]), ("column".into(), c[0]), ("again".into(), c[0])]
     });
     let mut tape = program.tape::<f64>(3);
     let mut out = [0.0; 8];
@@ -327,16 +291,7 @@ fn outputs_of_every_kind() {
     program.forward(&[5.0, 6.0], 2, 2, &mut tape, &mut out, 2);
     assert_eq!(out, [4.0, 4.0, 2.0, 2.0, 5.0, 6.0, 5.0, 6.0]);
     let (mut by_column, mut by_uniform) = ([9.0; 2], [10.0]);
-    program.vjp(
-        &[5.0, 6.0],
-        2,
-        2,
-        &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0],
-        2,
-        &mut tape,
-        &mut by_column,
-        2,
-    );
+    program.vjp(&[5.0, 6.0], 2, 2, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], 2, &mut tape, &mut by_column, 2);
     program.vjp_uniform(&mut tape, &mut by_uniform);
     assert_eq!((by_column, by_uniform), ([12.0, 14.0], [17.0]));
     program.forward(&[], 0, 0, &mut tape, &mut [], 0);
@@ -346,10 +301,7 @@ fn outputs_of_every_kind() {
 #[test]
 fn gradcheck_names_what_is_wrong() {
     let ramp = Program::trace(&["offset"], &["x"], |u, c| {
-        vec![(
-            "push".into(),
-            (c[0] - u[0]).max(<hwasp_diff::Var<'_> as Scalar>::constant(0.0)),
-        )]
+        vec![("push".into(), (c[0] - u[0]).max(<hwasp_diff::Var<'_> as Scalar>::constant(0.0)))]
     });
     let error = gradcheck(&ramp, &[0.5], &[1.0, 0.5], &GradCheckSettings::default()).unwrap_err();
     assert_eq!(
@@ -357,9 +309,7 @@ fn gradcheck_names_what_is_wrong() {
         "d(push)/d(offset) in row 1, at offset = 5e-1: the program says -1e0, finite differences -5e-1; \
          relative error 5.0e-1 is above 1.0e-6"
     );
-    let root = Program::trace(&[] as &[&str], &["x"], |_, c| {
-        vec![("root".into(), c[0].sqrt())]
-    });
+    let root = Program::trace(&[] as &[&str], &["x"], |_, c| vec![("root".into(), c[0].sqrt())]);
     let error = gradcheck(&root, &[], &[0.0], &GradCheckSettings::default()).unwrap_err();
     assert!(matches!(error, GradCheckError::NotFinite { .. }), "{error}");
 }

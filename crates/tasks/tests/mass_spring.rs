@@ -221,3 +221,30 @@ fn a_free_swing_gains_the_energy_of_the_scheme() {
     }
     close(energy(robot.plant().upper()) / before, 7.07, 0.7);
 }
+
+/// y1 ~ U(0, 0.5), v1 ~ U(-2, 2): over 2000 starts the ends are reached within 1 % and the means are within four standard
+/// errors, 0.5/√12/√2000 = 0.0032 m and 4/√12/√2000 = 0.026 m/s.
+#[test]
+fn starts_fill_the_range() {
+    for (problem, gap) in [
+        (MassSpring::stiffness(MassSpringSettings::default()), 0.1),
+        (MassSpring::bar(MassSpringSettings::default(), Interface::Soft), 0.025),
+        (MassSpring::bar(MassSpringSettings::default(), Interface::Rigid), 0.025),
+    ] {
+        let mut robot = problem.unwrap().robot(None);
+        let (mut positions, mut speeds) = (Vec::new(), Vec::new());
+        for episode in 0..2000 {
+            robot.reset(&mut stream(0, Purpose::TrainingReset, 0, episode));
+            let ((y1, v1), (y2, v2)) = (robot.plant().upper(), robot.plant().lower());
+            assert_eq!((y2, v2), (y1 + gap, v1));
+            positions.push(y1);
+            speeds.push(v1);
+        }
+        for (values, lo, hi, error) in [(positions, 0.0, 0.5, 0.0032), (speeds, -2.0, 2.0, 0.026)] {
+            let (mean, margin) = (values.iter().sum::<f64>() / 2000.0, 0.01 * (hi - lo));
+            close(mean, 0.5 * (lo + hi), 4.0 * error);
+            close(values.iter().copied().fold(f64::INFINITY, f64::min), lo + 0.5 * margin, 0.5 * margin);
+            close(values.iter().copied().fold(f64::NEG_INFINITY, f64::max), hi - 0.5 * margin, 0.5 * margin);
+        }
+    }
+}

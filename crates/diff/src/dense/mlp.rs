@@ -160,7 +160,8 @@ impl Mlp {
         let layers = self
             .layers()
             .map(|l| {
-                let (long, short) = if l.narrow { (l.outputs, padded::<F>(l.inputs)) } else { (l.inputs, padded::<F>(l.outputs)) };
+                let (long, short) =
+                    if l.narrow { (l.outputs, padded::<F>(l.inputs)) } else { (l.inputs, padded::<F>(l.outputs)) };
                 let stride = if l.narrow { l.outputs } else { short };
                 widest = widest.max(stride).max(padded::<F>(l.inputs));
                 let weights = Aligned::zeroed(long * short);

@@ -15,35 +15,19 @@ pub(super) fn write(graph: &Graph, style: &GraphStyle) -> String {
     if !style.title.is_empty() {
         line(
             &mut text,
-            format_args!(
-                "  label={}; labelloc=t; fontname=\"Helvetica,Arial,sans-serif\";",
-                quoted(&style.title)
-            ),
+            format_args!("  label={}; labelloc=t; fontname=\"Helvetica,Arial,sans-serif\";", quoted(&style.title)),
         );
     }
     for (i, node) in graph.nodes.iter().enumerate() {
         let look = match node.kind {
-            Kind::Uniform => {
-                "shape=box, style=\"filled,rounded\", fillcolor=\"#dbeafe\", color=\"#2563eb\""
-            }
-            Kind::Column => {
-                "shape=box, style=\"filled,rounded\", fillcolor=\"#dcfce7\", color=\"#16a34a\""
-            }
+            Kind::Uniform => "shape=box, style=\"filled,rounded\", fillcolor=\"#dbeafe\", color=\"#2563eb\"",
+            Kind::Column => "shape=box, style=\"filled,rounded\", fillcolor=\"#dcfce7\", color=\"#16a34a\"",
             Kind::Constant => "shape=plaintext, style=\"\", fontcolor=\"#9ca3af\"",
-            Kind::Output => {
-                "shape=box, style=\"filled,rounded,bold\", fillcolor=\"#ffedd5\", color=\"#ea580c\""
-            }
+            Kind::Output => "shape=box, style=\"filled,rounded,bold\", fillcolor=\"#ffedd5\", color=\"#ea580c\"",
             Kind::Unary(_) | Kind::Binary(_) | Kind::Clamp => "shape=ellipse, fillcolor=white",
         };
-        let stacked = if node.members.is_empty() {
-            ""
-        } else {
-            ", peripheries=2"
-        };
-        line(
-            &mut text,
-            format_args!("  n{i} [label={}, {look}{stacked}];", quoted(&node.label)),
-        );
+        let stacked = if node.members.is_empty() { "" } else { ", peripheries=2" };
+        line(&mut text, format_args!("  n{i} [label={}, {look}{stacked}];", quoted(&node.label)));
     }
     for (i, node) in graph.nodes.iter().enumerate() {
         for (position, edge) in node.inputs.iter().enumerate() {
@@ -55,11 +39,7 @@ pub(super) fn write(graph: &Graph, style: &GraphStyle) -> String {
             if reads_many(edge, &graph.nodes) {
                 looks.push("penwidth=2".into());
             }
-            let looks = if looks.is_empty() {
-                String::new()
-            } else {
-                format!(" [{}]", looks.join(", "))
-            };
+            let looks = if looks.is_empty() { String::new() } else { format!(" [{}]", looks.join(", ")) };
             line(&mut text, format_args!("  n{} -> n{i}{looks};", edge.from));
         }
     }

@@ -69,21 +69,10 @@ struct Raw<'a> {
 impl<'a> Raw<'a> {
     /// All values of a program: inputs, then instructions with their constants, then outputs.
     fn of(program: &'a Program) -> Vec<Self> {
-        let input = |kind| {
-            move |name: &'a String| Raw {
-                kind,
-                name,
-                value: 0.0,
-                args: Vec::new(),
-            }
-        };
+        let input = |kind| move |name: &'a String| Raw { kind, name, value: 0.0, args: Vec::new() };
         let uniforms = program.uniform_names().len();
         let columns = program.column_names().len();
-        let mut raw: Vec<_> = program
-            .uniform_names()
-            .iter()
-            .map(input(Kind::Uniform))
-            .collect();
+        let mut raw: Vec<_> = program.uniform_names().iter().map(input(Kind::Uniform)).collect();
         raw.extend(program.column_names().iter().map(input(Kind::Column)));
         let mut place: HashMap<Slot, usize> = HashMap::new();
         let read = |slot, raw: &mut Vec<Self>, place: &HashMap<Slot, usize>| match slot {
@@ -91,51 +80,25 @@ impl<'a> Raw<'a> {
             Slot::Column(c) => uniforms + c,
             // A constant is drawn beside each of its uses.
             Slot::Constant(c) => {
-                raw.push(Raw {
-                    kind: Kind::Constant,
-                    name: "",
-                    value: program.constants()[c],
-                    args: Vec::new(),
-                });
+                raw.push(Raw { kind: Kind::Constant, name: "", value: program.constants()[c], args: Vec::new() });
                 raw.len() - 1
             }
             slot => place[&slot],
         };
-        let uniform_code = program
-            .uniform_code()
-            .iter()
-            .enumerate()
-            .map(|(k, i)| (Slot::Uniform(uniforms + k), i));
-        let row_code = program
-            .row_code()
-            .iter()
-            .enumerate()
-            .map(|(k, i)| (Slot::Register(k), i));
+        let uniform_code = program.uniform_code().iter().enumerate().map(|(k, i)| (Slot::Uniform(uniforms + k), i));
+        let row_code = program.row_code().iter().enumerate().map(|(k, i)| (Slot::Register(k), i));
         for (slot, instruction) in uniform_code.chain(row_code) {
             let kind = match *instruction {
                 Instruction::Unary(op, _) => Kind::Unary(op),
                 Instruction::Binary(op, _, _) => Kind::Binary(op),
             };
-            let args = instruction
-                .operands()
-                .map(|slot| read(slot, &mut raw, &place))
-                .collect();
-            raw.push(Raw {
-                kind,
-                name: "",
-                value: 0.0,
-                args,
-            });
+            let args = instruction.operands().map(|slot| read(slot, &mut raw, &place)).collect();
+            raw.push(Raw { kind, name: "", value: 0.0, args });
             place.insert(slot, raw.len() - 1);
         }
         for (name, &slot) in program.output_names().iter().zip(program.output_slots()) {
             let args = vec![read(slot, &mut raw, &place)];
-            raw.push(Raw {
-                kind: Kind::Output,
-                name,
-                value: 0.0,
-                args,
-            });
+            raw.push(Raw { kind: Kind::Output, name, value: 0.0, args });
         }
         debug_assert!(raw.len() >= uniforms + columns);
         raw
@@ -189,9 +152,7 @@ fn classify(raw: &[Raw<'_>]) -> Vec<Class> {
             });
             classes.push(class.filter(|(id, _)| !rejected.contains(id)));
         }
-        let partial = |id: &usize| {
-            members[id].len() < 2 || reads[id].iter().any(|group| members[group] != members[id])
-        };
+        let partial = |id: &usize| members[id].len() < 2 || reads[id].iter().any(|group| members[group] != members[id]);
         let before = rejected.len();
         rejected.extend(members.keys().filter(|id| partial(id)));
         if rejected.len() == before {
@@ -202,12 +163,7 @@ fn classify(raw: &[Raw<'_>]) -> Vec<Class> {
 
 /// The group that a value may belong to, and its index there.
 fn candidate(node: &Raw<'_>, raw: &[Raw<'_>], classes: &[Class]) -> Option<(Key, usize)> {
-    let key = |base: &str, args| Key {
-        kind: node.kind,
-        base: base.to_owned(),
-        args,
-        repeat: 0,
-    };
+    let key = |base: &str, args| Key { kind: node.kind, base: base.to_owned(), args, repeat: 0 };
     if matches!(node.kind, Kind::Uniform | Kind::Column) {
         let (base, index) = names::member(node.name)?;
         return Some((key(base, Vec::new()), index));
@@ -240,67 +196,34 @@ fn collect(raw: &[Raw<'_>], classes: &[Class], style: &GraphStyle) -> Graph {
             // Constants are made with the operation that reads them.
             _ if node.kind == Kind::Constant => continue,
             Some((id, _)) if of_group.contains_key(&id) => continue,
-            Some((id, _)) => (i..raw.len())
-                .filter(|&j| matches!(classes[j], Some((other, _)) if other == id))
-                .collect(),
+            Some((id, _)) => {
+                (i..raw.len()).filter(|&j| matches!(classes[j], Some((other, _)) if other == id)).collect()
+            }
             None => vec![i],
         };
         let mut inputs = Vec::new();
         for (position, &arg) in node.args.iter().enumerate() {
             let (from, only) = match classes[arg] {
                 _ if raw[arg].kind == Kind::Constant => {
-                    let values: Vec<_> = group
-                        .iter()
-                        .map(|&member| raw[raw[member].args[position]].value)
-                        .collect();
+                    let values: Vec<_> = group.iter().map(|&member| raw[raw[member].args[position]].value).collect();
                     let label = names::numbers(&values);
                     let members = Vec::new();
-                    nodes.push(Node {
-                        kind: Kind::Constant,
-                        label,
-                        members,
-                        inputs: Vec::new(),
-                        values,
-                    });
+                    nodes.push(Node { kind: Kind::Constant, label, members, inputs: Vec::new(), values });
                     (nodes.len() - 1, Vec::new())
                 }
-                Some((id, member)) => (
-                    of_group[&id],
-                    if classes[i].is_some() {
-                        Vec::new()
-                    } else {
-                        vec![member]
-                    },
-                ),
+                Some((id, member)) => (of_group[&id], if classes[i].is_some() { Vec::new() } else { vec![member] }),
                 None => (of_raw[&arg], Vec::new()),
             };
-            inputs.push(Edge {
-                from,
-                only,
-                minus: false,
-            });
+            inputs.push(Edge { from, only, minus: false });
         }
-        let members: Vec<usize> = group
-            .iter()
-            .filter_map(|&j| classes[j].map(|(_, index)| index))
-            .collect();
-        let base = if members.is_empty() {
-            node.name
-        } else {
-            names::member(node.name).map_or("", |(base, _)| base)
-        };
+        let members: Vec<usize> = group.iter().filter_map(|&j| classes[j].map(|(_, index)| index)).collect();
+        let base = if members.is_empty() { node.name } else { names::member(node.name).map_or("", |(base, _)| base) };
         let label = match node.kind {
             Kind::Unary(op) => names::unary(op).to_owned(),
             Kind::Binary(op) => names::binary(op).to_owned(),
             _ => labelled(base, members.len(), style),
         };
-        nodes.push(Node {
-            kind: node.kind,
-            label,
-            members,
-            inputs,
-            values: Vec::new(),
-        });
+        nodes.push(Node { kind: node.kind, label, members, inputs, values: Vec::new() });
         of_raw.insert(i, nodes.len() - 1);
         if let Some((id, _)) = classes[i] {
             of_group.insert(id, nodes.len() - 1);

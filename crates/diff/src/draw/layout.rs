@@ -32,19 +32,8 @@ struct Item {
 /// Places nodes of the given sizes (width, height).
 pub(super) fn place(graph: &Graph, sizes: &[(f64, f64)]) -> Layout {
     let layers = layers(graph);
-    let item = |layer, height, passing| Item {
-        layer,
-        height,
-        before: Vec::new(),
-        after: Vec::new(),
-        y: 0.0,
-        passing,
-    };
-    let mut items: Vec<Item> = layers
-        .iter()
-        .zip(sizes)
-        .map(|(&layer, size)| item(layer, size.1, false))
-        .collect();
+    let item = |layer, height, passing| Item { layer, height, before: Vec::new(), after: Vec::new(), y: 0.0, passing };
+    let mut items: Vec<Item> = layers.iter().zip(sizes).map(|(&layer, size)| item(layer, size.1, false)).collect();
     let mut passes: Vec<Vec<Vec<usize>>> = Vec::new();
     for (to, node) in graph.nodes.iter().enumerate() {
         let mut of_node = Vec::new();
@@ -71,12 +60,8 @@ pub(super) fn place(graph: &Graph, sizes: &[(f64, f64)]) -> Layout {
     reorder(&items, &mut order);
     settle(&mut items, &order);
 
-    let widest = |layer: &Vec<usize>| {
-        layer
-            .iter()
-            .filter_map(|&i| sizes.get(i))
-            .fold(0.0, |w: f64, size| w.max(size.0))
-    };
+    let widest =
+        |layer: &Vec<usize>| layer.iter().filter_map(|&i| sizes.get(i)).fold(0.0, |w: f64, size| w.max(size.0));
     let mut spans = Vec::new();
     let mut x = 0.0;
     for layer in &order {
@@ -84,45 +69,21 @@ pub(super) fn place(graph: &Graph, sizes: &[(f64, f64)]) -> Layout {
         spans.push((x, x + width));
         x += width + LAYER_GAP;
     }
-    let top = items.iter().fold(f64::INFINITY, |top, item| {
-        top.min(item.y - item.height / 2.0)
-    });
-    let bottom = items.iter().fold(f64::NEG_INFINITY, |bottom, item| {
-        bottom.max(item.y + item.height / 2.0)
-    });
+    let top = items.iter().fold(f64::INFINITY, |top, item| top.min(item.y - item.height / 2.0));
+    let bottom = items.iter().fold(f64::NEG_INFINITY, |bottom, item| bottom.max(item.y + item.height / 2.0));
     let centre = |i: usize, item: &Item| {
         let (from, to) = spans[item.layer];
         // Inputs stand flush right, so that their arrows start together.
-        let x = if item.layer == 0 {
-            to - sizes[i].0 / 2.0
-        } else {
-            f64::midpoint(from, to)
-        };
+        let x = if item.layer == 0 { to - sizes[i].0 / 2.0 } else { f64::midpoint(from, to) };
         (x, item.y - top)
     };
     let at = (0..sizes.len()).map(|i| centre(i, &items[i])).collect();
-    let stretch = |&i: &usize| {
-        (
-            spans[items[i].layer].0,
-            spans[items[i].layer].1,
-            items[i].y - top,
-        )
-    };
+    let stretch = |&i: &usize| (spans[items[i].layer].0, spans[items[i].layer].1, items[i].y - top);
     let ways = passes
         .iter()
-        .map(|of_node| {
-            of_node
-                .iter()
-                .map(|of_edge| of_edge.iter().map(stretch).collect())
-                .collect()
-        })
+        .map(|of_node| of_node.iter().map(|of_edge| of_edge.iter().map(stretch).collect()).collect())
         .collect();
-    Layout {
-        at,
-        ways,
-        width: (x - LAYER_GAP).max(0.0),
-        height: (bottom - top).max(0.0),
-    }
+    Layout { at, ways, width: (x - LAYER_GAP).max(0.0), height: (bottom - top).max(0.0) }
 }
 
 fn link(items: &mut [Item], from: usize, to: usize) {
@@ -135,12 +96,7 @@ fn link(items: &mut [Item], from: usize, to: usize) {
 fn layers(graph: &Graph) -> Vec<usize> {
     let mut layers = vec![0_usize; graph.nodes.len()];
     for (i, node) in graph.nodes.iter().enumerate() {
-        layers[i] = node
-            .inputs
-            .iter()
-            .map(|edge| layers[edge.from] + 1)
-            .max()
-            .unwrap_or(0);
+        layers[i] = node.inputs.iter().map(|edge| layers[edge.from] + 1).max().unwrap_or(0);
     }
     let last = layers.iter().copied().max().unwrap_or(0);
     for (i, node) in graph.nodes.iter().enumerate() {
@@ -166,19 +122,12 @@ fn reorder(items: &[Item], order: &mut Vec<Vec<usize>>) {
         for step in 0..count {
             let layer = if forward { step } else { count - 1 - step };
             let key = |i: usize| {
-                let neighbours = if forward {
-                    &items[i].before
-                } else {
-                    &items[i].after
-                };
+                let neighbours = if forward { &items[i].before } else { &items[i].after };
                 let sum: f64 = neighbours.iter().map(|&n| place[n]).sum();
                 (!neighbours.is_empty()).then(|| sum / neighbours.len() as f64)
             };
-            let mut keyed: Vec<(f64, usize)> = order[layer]
-                .iter()
-                .enumerate()
-                .map(|(k, &i)| (key(i).unwrap_or(k as f64), i))
-                .collect();
+            let mut keyed: Vec<(f64, usize)> =
+                order[layer].iter().enumerate().map(|(k, &i)| (key(i).unwrap_or(k as f64), i)).collect();
             keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
             order[layer] = keyed.iter().map(|&(_, i)| i).collect();
             for (k, &i) in order[layer].iter().enumerate() {
@@ -208,10 +157,7 @@ fn crossings(items: &[Item], order: &[Vec<usize>]) -> usize {
             .map(|(i, j)| (place[i], place[j]))
             .collect();
         for (k, a) in links.iter().enumerate() {
-            crossed += links[k + 1..]
-                .iter()
-                .filter(|b| (a.0 < b.0 && a.1 > b.1) || (a.0 > b.0 && a.1 < b.1))
-                .count();
+            crossed += links[k + 1..].iter().filter(|b| (a.0 < b.0 && a.1 > b.1) || (a.0 > b.0 && a.1 < b.1)).count();
         }
     }
     crossed
@@ -231,11 +177,7 @@ fn settle(items: &mut [Item], order: &[Vec<usize>]) {
     }
     for sweep in 0..80 {
         for step in 0..order.len() {
-            let layer = &order[if sweep % 2 == 0 {
-                step
-            } else {
-                order.len() - 1 - step
-            }];
+            let layer = &order[if sweep % 2 == 0 { step } else { order.len() - 1 - step }];
             let wanted: Vec<(f64, f64)> = layer.iter().map(|&i| wanted(items, i)).collect();
             let gaps: Vec<f64> = layer
                 .windows(2)
@@ -256,14 +198,8 @@ fn wanted(items: &[Item], i: usize) -> (f64, f64) {
         (false, false) => 1.0,
     };
     let near = items[i].before.iter().chain(&items[i].after);
-    let (sum, total) = near.fold((0.0, 0.0), |(sum, total), &n| {
-        (sum + weight(n) * items[n].y, total + weight(n))
-    });
-    if total > 0.0 {
-        (sum / total, total)
-    } else {
-        (items[i].y, 1.0)
-    }
+    let (sum, total) = near.fold((0.0, 0.0), |(sum, total), &n| (sum + weight(n) * items[n].y, total + weight(n)));
+    if total > 0.0 { (sum / total, total) } else { (items[i].y, 1.0) }
 }
 
 /// The places nearest to what is wanted (place, weight) in weighted least squares, with at least `gaps` between
@@ -288,11 +224,6 @@ fn closest(wanted: &[(f64, f64)], gaps: &[f64]) -> Vec<f64> {
         }
         pools.push(pool);
     }
-    let means = pools
-        .iter()
-        .flat_map(|&(sum, weight, count)| std::iter::repeat_n(sum / weight, count));
-    means
-        .zip(offsets)
-        .map(|(mean, offset)| mean + offset)
-        .collect()
+    let means = pools.iter().flat_map(|&(sum, weight, count)| std::iter::repeat_n(sum / weight, count));
+    means.zip(offsets).map(|(mean, offset)| mean + offset).collect()
 }

@@ -13,16 +13,8 @@ pub(super) fn member(name: &str) -> Option<(&str, usize)> {
 
 /// A name with the size of its group and its unit.
 pub(super) fn labelled(name: &str, members: usize, style: &GraphStyle) -> String {
-    let unit_of = |name: &str| {
-        style
-            .units
-            .iter()
-            .find(|(named, _)| named == name)
-            .map(|(_, unit)| unit.as_str())
-    };
-    let unit = unit_of(name)
-        .or_else(|| unit_of(member(name)?.0))
-        .filter(|unit| !unit.is_empty());
+    let unit_of = |name: &str| style.units.iter().find(|(named, _)| named == name).map(|(_, unit)| unit.as_str());
+    let unit = unit_of(name).or_else(|| unit_of(member(name)?.0)).filter(|unit| !unit.is_empty());
     let mut label = name.to_owned();
     if members > 1 {
         let _ = write!(label, " [{members}]");
@@ -40,11 +32,7 @@ pub(super) fn number(value: f64) -> String {
         return format!("{value:.3e}").replace('-', "−");
     }
     let text = format!("{value:.4}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     text.replace('-', "−")
 }
 

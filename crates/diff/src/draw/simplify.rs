@@ -23,22 +23,14 @@ pub(super) fn simplify(graph: Graph) -> Graph {
             continue;
         }
         let terms = merged(terms(&nodes, &uses, i, op), &nodes);
-        if let [
-            Edge {
-                from,
-                only,
-                minus: false,
-            },
-        ] = &terms[..]
+        if let [Edge { from, only, minus: false }] = &terms[..]
             && only.is_empty()
             && nodes[*from].members.len() == nodes[i].members.len()
         {
             alias[i] = *from;
             continue;
         }
-        let reduces = terms
-            .iter()
-            .any(|edge| reads_many(edge, &nodes) && nodes[i].members.is_empty());
+        let reduces = terms.iter().any(|edge| reads_many(edge, &nodes) && nodes[i].members.is_empty());
         nodes[i].label = match op {
             Binary::Add if reduces => "Σ".into(),
             Binary::Mul if reduces => "Π".into(),
@@ -52,11 +44,7 @@ pub(super) fn simplify(graph: Graph) -> Graph {
 
 /// Whether an edge carries several members of a group.
 pub(super) fn reads_many(edge: &Edge, nodes: &[Node]) -> bool {
-    if edge.only.is_empty() {
-        nodes[edge.from].members.len() > 1
-    } else {
-        edge.only.len() > 1
-    }
+    if edge.only.is_empty() { nodes[edge.from].members.len() > 1 } else { edge.only.len() > 1 }
 }
 
 /// How many operations read each node; members read one by one count once each.
@@ -105,20 +93,11 @@ fn terms(nodes: &[Node], uses: &[usize], i: usize, op: Binary) -> Vec<Edge> {
         let inner = uses[edge.from] == 1 && edge.only.is_empty() && from.members == node.members;
         let is_zero = !from.values.is_empty() && from.values.iter().all(|value| *value == 0.0);
         if inner && from.kind == Kind::Binary(op) {
-            terms.extend(from.inputs.iter().map(|edge| Edge {
-                minus: edge.minus != minus,
-                ..edge.clone()
-            }));
+            terms.extend(from.inputs.iter().map(|edge| Edge { minus: edge.minus != minus, ..edge.clone() }));
         } else if inner && op == Binary::Add && from.kind == Kind::Unary(Unary::Neg) {
-            terms.extend(from.inputs.iter().map(|edge| Edge {
-                minus: edge.minus == minus,
-                ..edge.clone()
-            }));
+            terms.extend(from.inputs.iter().map(|edge| Edge { minus: edge.minus == minus, ..edge.clone() }));
         } else if !(op == Binary::Add && is_zero) {
-            terms.push(Edge {
-                minus,
-                ..edge.clone()
-            });
+            terms.push(Edge { minus, ..edge.clone() });
         }
     }
     terms
@@ -153,10 +132,8 @@ fn merged(terms: Vec<Edge>, nodes: &[Node]) -> Vec<Edge> {
 
 /// Keeps the inputs and what an output needs.
 fn compact(nodes: Vec<Node>) -> Graph {
-    let mut kept: Vec<bool> = nodes
-        .iter()
-        .map(|node| matches!(node.kind, Kind::Uniform | Kind::Column | Kind::Output))
-        .collect();
+    let mut kept: Vec<bool> =
+        nodes.iter().map(|node| matches!(node.kind, Kind::Uniform | Kind::Column | Kind::Output)).collect();
     for i in (0..nodes.len()).rev() {
         if kept[i] {
             for edge in &nodes[i].inputs {

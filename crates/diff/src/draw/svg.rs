@@ -55,14 +55,7 @@ fn size(node: &Node) -> (f64, f64) {
         // Tall enough for its arrows to be told apart.
         _ if is_operator(node) => {
             let height = f64::max(2.0 * ROUND, node.inputs.len() as f64 * ARROW_GAP + 8.0);
-            (
-                if text <= 28.0 {
-                    2.0 * ROUND
-                } else {
-                    text + 26.0
-                },
-                height,
-            )
+            (if text <= 28.0 { 2.0 * ROUND } else { text + 26.0 }, height)
         }
         _ => (text + 30.0, 32.0),
     }
@@ -73,14 +66,8 @@ pub(super) fn write(graph: &Graph, style: &GraphStyle) -> String {
     let layout = place(graph, &sizes);
     let head = if style.title.is_empty() { 0.0 } else { TITLE };
     let (legend, legend_width) = legend(graph, style);
-    let inner = layout
-        .width
-        .max(legend_width)
-        .max(text_width(&style.title, 17.0));
-    let (width, height) = (
-        inner + 2.0 * MARGIN,
-        layout.height + head + LEGEND + 2.0 * MARGIN,
-    );
+    let inner = layout.width.max(legend_width).max(text_width(&style.title, 17.0));
+    let (width, height) = (inner + 2.0 * MARGIN, layout.height + head + LEGEND + 2.0 * MARGIN);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          height=\"{height:.0}\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
@@ -95,21 +82,13 @@ pub(super) fn write(graph: &Graph, style: &GraphStyle) -> String {
         );
     }
     let left = MARGIN + (inner - layout.width) / 2.0;
-    let _ = writeln!(
-        text,
-        "<g transform=\"translate({left:.1} {:.1})\">",
-        MARGIN + head
-    );
+    let _ = writeln!(text, "<g transform=\"translate({left:.1} {:.1})\">", MARGIN + head);
     edges(&mut text, graph, &sizes, &layout);
     for (node, (&at, &size)) in graph.nodes.iter().zip(layout.at.iter().zip(&sizes)) {
         draw_node(&mut text, node, at, size);
     }
     let _ = writeln!(text, "</g>");
-    let _ = writeln!(
-        text,
-        "<g transform=\"translate({MARGIN} {:.1})\">\n{legend}</g>\n</svg>",
-        height - MARGIN
-    );
+    let _ = writeln!(text, "<g transform=\"translate({MARGIN} {:.1})\">\n{legend}</g>\n</svg>", height - MARGIN);
     text
 }
 
@@ -151,11 +130,7 @@ fn draw_node(text: &mut String, node: &Node, (x, y): (f64, f64), (width, height)
 fn edges(text: &mut String, graph: &Graph, sizes: &[(f64, f64)], layout: &Layout) {
     for (to, node) in graph.nodes.iter().enumerate() {
         let ways = &layout.ways[to];
-        let from_height = |k: usize| {
-            ways[k]
-                .last()
-                .map_or(layout.at[node.inputs[k].from].1, |way| way.2)
-        };
+        let from_height = |k: usize| ways[k].last().map_or(layout.at[node.inputs[k].from].1, |way| way.2);
         // Arrows arrive one above the other in the order in which they come.
         let mut arriving: Vec<usize> = (0..node.inputs.len()).collect();
         arriving.sort_by(|&a, &b| from_height(a).total_cmp(&from_height(b)));
@@ -166,26 +141,12 @@ fn edges(text: &mut String, graph: &Graph, sizes: &[(f64, f64)], layout: &Layout
             let spread = (rank as f64 - (arriving.len() - 1) as f64 / 2.0) * step;
             // The corners of an operator are quarter circles.
             let beyond = (spread.abs() - (height / 2.0 - ROUND)).max(0.0);
-            let inset = if is_operator(node) {
-                ROUND - (ROUND * ROUND - beyond * beyond).max(0.0).sqrt()
-            } else {
-                0.0
-            };
-            let end = (
-                layout.at[to].0 - half + inset - 1.0,
-                layout.at[to].1 + spread,
-            );
-            let start = (
-                layout.at[edge.from].0 + sizes[edge.from].0 / 2.0,
-                layout.at[edge.from].1,
-            );
+            let inset = if is_operator(node) { ROUND - (ROUND * ROUND - beyond * beyond).max(0.0).sqrt() } else { 0.0 };
+            let end = (layout.at[to].0 - half + inset - 1.0, layout.at[to].1 + spread);
+            let start = (layout.at[edge.from].0 + sizes[edge.from].0 / 2.0, layout.at[edge.from].1);
             let faint = graph.nodes[edge.from].kind == Kind::Constant;
             let colour = if faint { "#cbd5e1" } else { "#64748b" };
-            let weight = if reads_many(edge, &graph.nodes) {
-                2.2
-            } else {
-                1.2
-            };
+            let weight = if reads_many(edge, &graph.nodes) { 2.2 } else { 1.2 };
             let mut path = format!("M{:.1} {:.1}", start.0, start.1);
             let mut pen = start;
             for &(x0, x1, y) in &ways[k] {
@@ -194,15 +155,9 @@ fn edges(text: &mut String, graph: &Graph, sizes: &[(f64, f64)], layout: &Layout
                 pen = (x1, y);
             }
             bend(&mut path, pen, (end.0 - 7.0, end.1));
-            let _ = writeln!(
-                text,
-                "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{weight}\"/>"
-            );
+            let _ = writeln!(text, "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{weight}\"/>");
             let (x, y) = end;
-            let _ = writeln!(
-                text,
-                "<path d=\"M{x:.1} {y:.1} l-9 -4 l2 4 l-2 4 z\" fill=\"{colour}\"/>",
-            );
+            let _ = writeln!(text, "<path d=\"M{x:.1} {y:.1} l-9 -4 l2 4 l-2 4 z\" fill=\"{colour}\"/>",);
             if edge.minus {
                 minus(text, (x - 17.0, y));
             }
@@ -230,25 +185,16 @@ fn minus(text: &mut String, (x, y): (f64, f64)) {
 
 /// A mark beside an arrow, with a halo that keeps lines off it (two texts, because not every viewer knows paint orders).
 fn write_mark(text: &mut String, mark: &str, (x, y): (f64, f64)) {
-    for look in [
-        "fill=\"#fdfdfc\" stroke=\"#fdfdfc\" stroke-width=\"3\"",
-        "fill=\"#334155\"",
-    ] {
-        let _ = writeln!(
-            text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"11\" text-anchor=\"end\" {look}>{mark}</text>"
-        );
+    for look in ["fill=\"#fdfdfc\" stroke=\"#fdfdfc\" stroke-width=\"3\"", "fill=\"#334155\""] {
+        let _ =
+            writeln!(text, "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"11\" text-anchor=\"end\" {look}>{mark}</text>");
     }
 }
 
 /// A curve that leaves and arrives level.
 fn bend(path: &mut String, from: (f64, f64), to: (f64, f64)) {
     let middle = f64::midpoint(from.0, to.0);
-    let _ = write!(
-        path,
-        " C{middle:.1} {:.1} {middle:.1} {:.1} {:.1} {:.1}",
-        from.1, to.1, to.0, to.1
-    );
+    let _ = write!(path, " C{middle:.1} {:.1} {middle:.1} {:.1} {:.1} {:.1}", from.1, to.1, to.0, to.1);
 }
 
 /// The kinds of node that occur, and the width of the line.
@@ -277,7 +223,5 @@ fn legend(graph: &Graph, style: &GraphStyle) -> (String, f64) {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -25,22 +25,11 @@ impl Program {
         out_stride: usize,
     ) {
         tape.check(self);
-        assert!(
-            rows <= tape.max_rows,
-            "{rows} rows on a tape for {}",
-            tape.max_rows
-        );
+        assert!(rows <= tape.max_rows, "{rows} rows on a tape for {}", tape.max_rows);
         check_batch("columns", columns, self.column_names.len(), stride, rows);
         check_batch("outputs", out, self.outputs.len(), out_stride, rows);
         tape.rows = rows;
-        pulp::Arch::new().dispatch(Forward {
-            program: self,
-            columns,
-            column_stride: stride,
-            tape,
-            out,
-            out_stride,
-        });
+        pulp::Arch::new().dispatch(Forward { program: self, columns, column_stride: stride, tape, out, out_stride });
     }
 }
 
@@ -59,14 +48,7 @@ impl<F: Float> NullaryFnOnce for Forward<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            program,
-            columns,
-            column_stride,
-            tape,
-            out,
-            out_stride,
-        } = self;
+        let Self { program, columns, column_stride, tape, out, out_stride } = self;
         let (rows, stride) = (tape.rows, tape.stride);
         for (k, instruction) in program.row_code.iter().enumerate() {
             let (registers, rest) = tape.registers.split_at_mut(k * stride);

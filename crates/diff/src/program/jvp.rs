@@ -29,20 +29,8 @@ impl Program {
         tape.check(self);
         assert_eq!(rows, tape.rows, "as many rows as in the last forward pass");
         check_batch("columns", columns, self.column_names.len(), stride, rows);
-        check_batch(
-            "column tangents",
-            column_tangent,
-            self.column_names.len(),
-            stride,
-            rows,
-        );
-        check_batch(
-            "output tangents",
-            out_tangent,
-            self.outputs.len(),
-            out_stride,
-            rows,
-        );
+        check_batch("column tangents", column_tangent, self.column_names.len(), stride, rows);
+        check_batch("output tangents", out_tangent, self.outputs.len(), out_stride, rows);
         pulp::Arch::new().dispatch(Tangent {
             program: self,
             columns,
@@ -71,15 +59,7 @@ impl<F: Float> NullaryFnOnce for Tangent<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            program,
-            columns,
-            incoming,
-            column_stride,
-            tape,
-            out,
-            out_stride,
-        } = self;
+        let Self { program, columns, incoming, column_stride, tape, out, out_stride } = self;
         let (rows, stride) = (tape.rows, tape.stride);
         let values = Values {
             constants: &tape.constants,
@@ -92,27 +72,19 @@ impl<F: Float> NullaryFnOnce for Tangent<'_, F> {
         };
         for (k, instruction) in program.row_code.iter().enumerate() {
             let (registers, rest) = tape.scratch.split_at_mut(k * stride);
-            let tangents = Values {
-                uniforms: &tape.uniform_tangents,
-                columns: incoming,
-                registers,
-                ..values
-            };
+            let tangents = Values { uniforms: &tape.uniform_tangents, columns: incoming, registers, ..values };
             let v = Rows(&values.registers[k * stride..][..rows]);
             let out = &mut rest[..rows];
             match *instruction {
                 Instruction::Unary(op, a) => {
-                    if let (Operand::Rows(a), Operand::Rows(t)) =
-                        (values.operand(a), program.tangent(a, &tangents))
-                    {
+                    if let (Operand::Rows(a), Operand::Rows(t)) = (values.operand(a), program.tangent(a, &tangents)) {
                         with_unary!(op, OP => put(out, false, (t, a, a, v), |t, a, _, v| OP.pull(t, a, v)));
                     } else {
                         out.fill(F::ZERO);
                     }
                 }
                 Instruction::Binary(op, a, b) => {
-                    let sides =
-                        [a, b].map(|slot| (values.operand(slot), program.tangent(slot, &tangents)));
+                    let sides = [a, b].map(|slot| (values.operand(slot), program.tangent(slot, &tangents)));
                     with_binary!(op, OP => binary(
                         out,
                         sides,
@@ -123,12 +95,8 @@ impl<F: Float> NullaryFnOnce for Tangent<'_, F> {
                 }
             }
         }
-        let tangents = Values {
-            uniforms: &tape.uniform_tangents,
-            columns: incoming,
-            registers: &tape.scratch,
-            ..values
-        };
+        let tangents =
+            Values { uniforms: &tape.uniform_tangents, columns: incoming, registers: &tape.scratch, ..values };
         for (o, &slot) in program.outputs.iter().enumerate() {
             let out = &mut out[o * out_stride..][..rows];
             match program.tangent(slot, &tangents) {

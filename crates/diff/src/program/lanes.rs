@@ -76,12 +76,7 @@ pub(super) fn map1<F: Float>(out: &mut [F], a: impl Lane<F>, f: impl Fn(F) -> F)
 
 /// `out[i] = f(a[i], b[i])`.
 #[inline(always)]
-pub(super) fn map2<F: Float>(
-    out: &mut [F],
-    a: impl Lane<F>,
-    b: impl Lane<F>,
-    f: impl Fn(F, F) -> F,
-) {
+pub(super) fn map2<F: Float>(out: &mut [F], a: impl Lane<F>, b: impl Lane<F>, f: impl Fn(F, F) -> F) {
     let rows = out.len();
     let (a, b) = (a.cut(rows), b.cut(rows));
     for i in 0..rows {
@@ -122,12 +117,7 @@ pub(super) fn sum<F: Float>(
     let mut lanes = [F::ZERO; LANES];
     let whole = rows - rows % LANES;
     for start in (0..whole).step_by(LANES) {
-        let (g, a, b, v) = (
-            g.block(start),
-            a.block(start),
-            b.block(start),
-            v.block(start),
-        );
+        let (g, a, b, v) = (g.block(start), a.block(start), b.block(start), v.block(start));
         for l in 0..LANES {
             lanes[l] += f(g[l], a[l], b[l], v[l]);
         }

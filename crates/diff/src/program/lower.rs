@@ -32,9 +32,7 @@ pub(super) fn lower(
                 continue;
             }
             Node::Unary(op, a) => Instruction::Unary(op, constants.slot(a, &slots)),
-            Node::Binary(op, a, b) => {
-                Instruction::Binary(op, constants.slot(a, &slots), constants.slot(b, &slots))
-            }
+            Node::Binary(op, a, b) => Instruction::Binary(op, constants.slot(a, &slots), constants.slot(b, &slots)),
         };
         let slot = if instruction.operands().any(Slot::varies_by_row) {
             row_code.push(instruction);
@@ -45,10 +43,8 @@ pub(super) fn lower(
         };
         slots.push(Some(slot));
     }
-    let (output_names, outputs): (Vec<_>, Vec<_>) = outputs
-        .into_iter()
-        .map(|(name, arg)| (name, constants.slot(arg, &slots)))
-        .unzip();
+    let (output_names, outputs): (Vec<_>, Vec<_>) =
+        outputs.into_iter().map(|(name, arg)| (name, constants.slot(arg, &slots))).unzip();
     let held = vec![false; column_names.len()];
     let plan = ReversePlan::new(&row_code, &outputs, &held);
     Program {

@@ -31,9 +31,7 @@ impl ReversePlan {
     pub(super) fn new(row_code: &[Instruction], outputs: &[Slot], held: &[bool]) -> Self {
         let mut active = vec![false; row_code.len()];
         for (k, instruction) in row_code.iter().enumerate() {
-            active[k] = instruction
-                .operands()
-                .any(|slot| is_active(slot, &active, held));
+            active[k] = instruction.operands().any(|slot| is_active(slot, &active, held));
         }
         let mut columns = vec![false; held.len()];
         let mut registers = vec![false; row_code.len()];
@@ -45,16 +43,9 @@ impl ReversePlan {
                 Slot::Column(c) => &mut columns[c],
                 Slot::Register(r) => &mut registers[r],
             };
-            if std::mem::replace(touched, true) {
-                Deposit::Add
-            } else {
-                Deposit::Store
-            }
+            if std::mem::replace(touched, true) { Deposit::Add } else { Deposit::Store }
         };
-        let outputs = outputs
-            .iter()
-            .map(|&slot| deposit(slot, &mut registers))
-            .collect();
+        let outputs = outputs.iter().map(|&slot| deposit(slot, &mut registers)).collect();
         let mut code = vec![None; row_code.len()];
         for (k, instruction) in row_code.iter().enumerate().rev() {
             if registers[k] {
@@ -66,11 +57,7 @@ impl ReversePlan {
             }
         }
         let untouched = (0..columns.len()).filter(|&c| !columns[c]).collect();
-        Self {
-            outputs,
-            row_code: code,
-            untouched,
-        }
+        Self { outputs, row_code: code, untouched }
     }
 }
 

@@ -30,11 +30,7 @@ impl<F: Float> ProgramTape<F> {
         let stride = max_rows.next_multiple_of(LANES);
         let registers = program.row_code().len() * stride;
         Self {
-            constants: program
-                .constants()
-                .iter()
-                .map(|&value| F::from_f64(value))
-                .collect(),
+            constants: program.constants().iter().map(|&value| F::from_f64(value)).collect(),
             uniforms: vec![F::ZERO; uniforms],
             uniform_tangents: vec![F::ZERO; uniforms],
             uniform_cotangents: vec![F::ZERO; uniforms],
@@ -58,16 +54,8 @@ impl<F: Float> ProgramTape<F> {
     /// # Panics
     /// If the tapes belong to different programs.
     pub fn add_uniform_cotangents(&mut self, other: &Self) {
-        assert_eq!(
-            self.uniform_cotangents.len(),
-            other.uniform_cotangents.len(),
-            "tapes of the same program"
-        );
-        for (total, &more) in self
-            .uniform_cotangents
-            .iter_mut()
-            .zip(&other.uniform_cotangents)
-        {
+        assert_eq!(self.uniform_cotangents.len(), other.uniform_cotangents.len(), "tapes of the same program");
+        for (total, &more) in self.uniform_cotangents.iter_mut().zip(&other.uniform_cotangents) {
             *total += more;
         }
     }
@@ -134,12 +122,8 @@ impl<'a, F: Float> Values<'a, F> {
         match slot {
             Slot::Constant(c) => Operand::Same(Same(self.constants[c])),
             Slot::Uniform(u) => Operand::Same(Same(self.uniforms[u])),
-            Slot::Column(c) => {
-                Operand::Rows(Rows(&self.columns[c * self.column_stride..][..self.rows]))
-            }
-            Slot::Register(r) => {
-                Operand::Rows(Rows(&self.registers[r * self.stride..][..self.rows]))
-            }
+            Slot::Column(c) => Operand::Rows(Rows(&self.columns[c * self.column_stride..][..self.rows])),
+            Slot::Register(r) => Operand::Rows(Rows(&self.registers[r * self.stride..][..self.rows])),
         }
     }
 }

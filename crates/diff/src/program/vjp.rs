@@ -32,20 +32,8 @@ impl Program {
         tape.check(self);
         assert_eq!(rows, tape.rows, "as many rows as in the last forward pass");
         check_batch("columns", columns, self.column_names.len(), stride, rows);
-        check_batch(
-            "output cotangents",
-            out_cotangent,
-            self.outputs.len(),
-            cot_stride,
-            rows,
-        );
-        check_batch(
-            "column cotangents",
-            column_cotangent,
-            self.column_names.len(),
-            column_cot_stride,
-            rows,
-        );
+        check_batch("output cotangents", out_cotangent, self.outputs.len(), cot_stride, rows);
+        check_batch("column cotangents", column_cotangent, self.column_names.len(), column_cot_stride, rows);
         pulp::Arch::new().dispatch(Reverse {
             program: self,
             columns,
@@ -76,13 +64,7 @@ impl<F: Float> NullaryFnOnce for Reverse<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            program,
-            tape,
-            column_cotangent,
-            column_cot_stride,
-            ..
-        } = self;
+        let Self { program, tape, column_cotangent, column_cot_stride, .. } = self;
         let (rows, stride) = (tape.rows, tape.stride);
         let values = Values {
             constants: &tape.constants,
@@ -104,12 +86,7 @@ impl<F: Float> NullaryFnOnce for Reverse<'_, F> {
             stride,
             rows,
         };
-        for (o, (&slot, &deposit)) in program
-            .outputs
-            .iter()
-            .zip(&program.plan.outputs)
-            .enumerate()
-        {
+        for (o, (&slot, &deposit)) in program.outputs.iter().zip(&program.plan.outputs).enumerate() {
             let g = Rows(&self.out_cotangent[o * self.cot_stride..][..rows]);
             match slot {
                 Slot::Constant(_) => {}

@@ -35,11 +35,13 @@ pub struct Fault {
     pub excerpt: Option<Excerpt>,
     /// Sorts faults as they stand: what is missing, the file from its top, the command line from its left.
     pub(super) rank: (usize, usize, usize),
+    /// Index of the source it stands in, if it stands anywhere.
+    pub(super) source: Option<usize>,
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let gutter = self.line.map_or(0, |line| line.to_string().len());
+        let gutter = self.line.map_or(1, |line| line.to_string().len());
         write!(f, "error: {}", self.message)?;
         write!(f, "\n{:gutter$}--> {}", "", self.place)?;
         if let (Some(line), Some(excerpt)) = (self.line, &self.excerpt) {
@@ -73,6 +75,7 @@ impl SpecErrors {
             hint,
             excerpt: None,
             rank: (0, 0, 0),
+            source: None,
         });
         errors
     }
@@ -106,7 +109,7 @@ impl SpecErrors {
         if self.faults.is_empty() {
             return Ok(());
         }
-        self.faults.sort_by(|a, b| a.rank.cmp(&b.rank));
+        self.faults.sort_by_key(|fault| fault.rank);
         Err(self)
     }
 }

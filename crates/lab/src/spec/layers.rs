@@ -11,6 +11,9 @@ use super::tree::{Entry, Node, Table, Value, from_toml, merge};
 
 /// The longest file that is read, bytes: 1 MiB.
 pub const LONGEST_FILE: usize = 1 << 20;
+/// The longest file of which every syntax error is told; of a longer one the first has to do, because a file of
+/// nothing but errors needs a hundred times its size for them.
+const LONGEST_RECOVERY: usize = 1 << 16;
 /// The longest value of an option, bytes.
 const LONGEST_OPTION: usize = 1 << 14;
 /// The deepest key of an option.
@@ -36,27 +39,9 @@ impl Layers {
             return Err(SpecErrors::single(name, message, None));
         }
         let file = Source::File { name: name.into(), text: Arc::from(text) };
-        let (parsed, errors) = DeTable::parse_recoverable(text);
-        let mut faults = SpecErrors::default();
-        let mut last_line = None;
-        for error in errors {
-            let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint: None };
-            let fault = file.fault(0, &error.span().unwrap_or_default(), finding);
-            // What follows on the same line is mostly an echo.
-            if fault.line != last_line {
-                last_line = fault.line;
-                faults.push(fault);
-            }
-        }
-        faults.into_result()?;
-
-        let mut layers = Self {
-            sources: vec![file],
-            base: from_toml(parsed.get_ref(), 0),
-            overlays: Vec::new(),
-            overrides: Vec::new(),
-            faults: Vec::new(),
-        };
+        let parsed = parse(&file, text)?;
+        let mut layers =
+            Self { sources: vec![file], base: parsed, overlays: Vec::new(), overrides: Vec::new(), faults: Vec::new() };
         layers.split_overlays();
         Ok(layers)
     }
@@ -92,7 +77,11 @@ impl Layers {
             return self.with_override(key.trim(), value.trim());
         }
         let hint = "write it as key=value, --set ppo.clip_ratio=0.1 for example".to_owned();
-        self.refuse(Source::Option(format!("--set {assignment}")), "this sets nothing: it has no `=`".into(), Some(hint));
+        self.refuse(
+            Source::Option(format!("--set {assignment}")),
+            "this sets nothing: it has no `=`".into(),
+            Some(hint),
+        );
         self
     }
 
@@ -153,7 +142,7 @@ impl Layers {
         self.overlays.iter().map(|(name, _, node)| (name.as_str(), node.origin.source))
     }
 
-    /// The tables as they are for a method.
+    /// The file's tables as they are for a method.
     pub(super) fn merged(&self, method: &str) -> Table {
         let mut table = self.base.clone();
         for (name, _, node) in &self.overlays {
@@ -161,6 +150,12 @@ impl Layers {
                 merge(&mut table, over.clone());
             }
         }
+        table
+    }
+
+    /// The same with the command line's overrides.
+    pub(super) fn overridden(&self, method: &str) -> Table {
+        let mut table = self.merged(method);
         for over in &self.overrides {
             merge(&mut table, over.clone());
         }
@@ -192,6 +187,33 @@ impl Layers {
     }
 }
 
+/// A file's tables, or every line of it that is no TOML.
+fn parse(file: &Source, text: &str) -> Result<Table, SpecErrors> {
+    let (parsed, mut errors) = if text.len() <= LONGEST_RECOVERY {
+        DeTable::parse_recoverable(text)
+    } else {
+        match DeTable::parse(text) {
+            Ok(parsed) => (parsed, Vec::new()),
+            Err(error) => (toml::Spanned::new(0..0, DeTable::new()), vec![error]),
+        }
+    };
+    errors.sort_by_key(|error| error.span().map(|span| span.start));
+    let mut faults = SpecErrors::default();
+    let mut last = None;
+    for error in errors {
+        let span = error.span().unwrap_or_default();
+        let at = span.start.min(text.len());
+        // What follows on the same line is mostly an echo.
+        if last.is_none_or(|last| text.as_bytes()[last..at].contains(&b'\n')) {
+            let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint: None };
+            faults.push(file.fault(0, &span, finding));
+            last = Some(at);
+        }
+    }
+    faults.into_result()?;
+    Ok(from_toml(parsed.get_ref(), 0))
+}
+
 /// Says of a value and everything in it that it is part of another source with the same text.
 fn retag(node: &mut Node, source: usize) {
     node.origin.source = source;
@@ -217,7 +239,6 @@ fn split_key(key: &str) -> Result<Vec<String>, String> {
             c if quote == Some(c) => quote = None,
             '.' if quote.is_none() && depth == 0 => {
                 parts.push(String::new());
-                continue;
             }
             c => {
                 depth = match c {

@@ -11,6 +11,8 @@ use super::tree::{Node, Table, Value};
 pub(super) struct Reader<'r> {
     sources: &'r [Source],
     errors: RefCell<SpecErrors>,
+    /// Keys whose value became the default because it was wrong.
+    unsound: RefCell<Vec<String>>,
     /// Every key that some section asked for, with the section.
     known: RefCell<Vec<(String, &'static str)>>,
     /// Keys that nobody asked for: section, key and where it stands.
@@ -22,6 +24,7 @@ impl<'r> Reader<'r> {
         Self {
             sources,
             errors: RefCell::default(),
+            unsound: RefCell::default(),
             known: RefCell::default(),
             unknown: RefCell::default(),
         }
@@ -36,14 +39,14 @@ impl<'r> Reader<'r> {
         let mut fault = self.sources[at.source].fault(at.source, &at.span, finding);
         if origin.is_none() {
             fault.place = self.sources[at.source].name();
-            (fault.line, fault.excerpt, fault.rank) = (None, None, (0, 0, 0));
+            (fault.line, fault.excerpt, fault.rank, fault.source) = (None, None, (0, 0, 0), None);
         }
         errors.push(fault);
     }
 
-    /// Whether no fault was found at any of these keys, so that they can be held against each other.
+    /// Whether each of these keys has the value that was asked for, so that they can be held against each other.
     pub(super) fn sound(&self, keys: &[&str]) -> bool {
-        !self.errors.borrow().faults().iter().any(|fault| keys.contains(&fault.key.as_str()))
+        !self.unsound.borrow().iter().any(|key| keys.contains(&key.as_str()))
     }
 
     /// The table under `name`, or what stands for it where the file has none.
@@ -68,17 +71,19 @@ impl<'r> Reader<'r> {
             let full = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
             let place = if path.is_empty() { "at the top".to_owned() } else { format!("in [{path}]") };
             let here = || known.iter().filter(|(section, _)| section == path).map(|(_, key)| *key);
-            let elsewhere = known.iter().find(|(_, other)| other == key).map(|(section, _)| section);
+            // The sections that have a key of this name, in words.
+            let owners = |name: &str| {
+                let sections = known.iter().filter(|(_, other)| *other == name);
+                let sections = sections.map(|(s, _)| if s.is_empty() { "the top".into() } else { format!("[{s}]") });
+                sections.collect::<Vec<_>>().join(" or ")
+            };
             let hint = if self.errors.borrow().is_full() {
-                String::new()
+                String::new() // it is only counted
             } else if let Some(near) = nearest(key, here()) {
                 format!("did you mean `{near}`?")
-            } else if let Some(section) = elsewhere {
-                if section.is_empty() { format!("`{key}` belongs at the top") } else { format!("`{key}` belongs to [{section}]") }
-            } else if let Some((section, near)) =
-                known.iter().find(|(_, other)| nearest(key, [*other]).is_some())
-            {
-                format!("did you mean `{near}` of [{section}]?")
+            } else if let Some(near) = nearest(key, known.iter().map(|(_, other)| *other)) {
+                let what = if near == key { "it belongs to" } else { &format!("did you mean `{near}` of") };
+                format!("{what} {}{}", owners(near), if near == key { "" } else { "?" })
             } else {
                 format!("the keys here are {}", listed(here()))
             };
@@ -123,6 +128,7 @@ impl<'r> Section<'r> {
     pub(super) fn wrong(&self, key: &str, node: &Node, rest: &str, hint: Option<String>) {
         let path = self.path(key);
         self.reader.fault(Some(&node.origin), &path, format!("{path} = {} {rest}", node.shown()), hint);
+        self.reader.unsound.borrow_mut().push(path);
     }
 
     /// Notes a fault between keys, at the value of this one, or at the file where the key is absent.

@@ -45,7 +45,7 @@ impl Source {
         match self {
             Self::Option(typed) => {
                 let place = shorten(typed, 120);
-                Fault { place, line: None, key, message, hint, excerpt: None, rank: (2, index, 0) }
+                Fault { place, line: None, key, message, hint, excerpt: None, rank: (2, index, 0), source: Some(index) }
             }
             Self::File { name, text } => {
                 let start = floor(text, span.start);
@@ -58,7 +58,8 @@ impl Source {
                 let width = text[start..end.max(start)].chars().count().max(1);
                 let excerpt = excerpt(&text[line_start..line_end], column, width);
                 let place = format!("{}:{line}:{}", shorten(name, 120), column + 1);
-                Fault { place, line: Some(line), key, message, hint, excerpt: Some(excerpt), rank: (1, line, column) }
+                let (line_shown, excerpt, rank) = (Some(line), Some(excerpt), (1, line, column));
+                Fault { place, line: line_shown, key, message, hint, excerpt, rank, source: Some(index) }
             }
         }
     }

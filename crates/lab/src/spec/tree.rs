@@ -8,6 +8,9 @@ use toml::de::{DeTable, DeValue};
 use super::fault::{shorten, show};
 use super::source::Origin;
 
+/// Items of a list that a message shows.
+const SHOWN_ITEMS: usize = 6;
+
 /// A value and where it was written.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
@@ -24,8 +27,10 @@ pub(super) enum Value {
     Flag(bool),
     List(Vec<Node>),
     Table(Table),
-    /// What no key takes: dates, and integers of more than 64 bits; kept as what it is, for the message.
-    Other(String),
+    /// An integer of more than 64 bits, in decimal or as it was written.
+    Huge(String),
+    /// A date, which no key takes.
+    Date(String),
 }
 
 /// A key's value and where the key itself was written.
@@ -45,14 +50,14 @@ impl Node {
             DeValue::String(text) => Value::Text(text.as_ref().to_owned()),
             DeValue::Integer(digits) => match i64::from_str_radix(digits.as_str(), digits.radix()) {
                 Ok(value) => Value::Integer(value),
-                Err(_) => Value::Other(format!("the integer {}", shorten(&digits.to_string(), 40))),
+                Err(_) => Value::Huge(digits.to_string()),
             },
             DeValue::Float(digits) => match digits.as_str().parse() {
                 Ok(value) => Value::Float(value),
-                Err(_) => Value::Other(format!("the number {}", shorten(digits.as_str(), 40))),
+                Err(_) => Value::Huge(digits.as_str().to_owned()),
             },
             DeValue::Boolean(flag) => Value::Flag(*flag),
-            DeValue::Datetime(date) => Value::Other(format!("the date {date}")),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
             DeValue::Array(list) => Value::List(list.iter().map(|item| Self::from_toml(item, source)).collect()),
             DeValue::Table(table) => Value::Table(from_toml(table, source)),
         };
@@ -66,9 +71,12 @@ impl Node {
             Value::Integer(value) => value.to_string(),
             Value::Float(value) => show(*value),
             Value::Flag(value) => value.to_string(),
-            Value::List(items) => format!("a list of {}", items.len()),
+            Value::List(items) => {
+                let shown = items.iter().take(SHOWN_ITEMS).map(Self::shown).collect::<Vec<_>>().join(", ");
+                format!("[{shown}{}]", if items.len() > SHOWN_ITEMS { ", …" } else { "" })
+            }
             Value::Table(_) => "a table".into(),
-            Value::Other(what) => what.clone(),
+            Value::Huge(text) | Value::Date(text) => shorten(text, 40),
         }
     }
 
@@ -77,6 +85,7 @@ impl Node {
         match self.value {
             Value::Float(value) => Some(value),
             Value::Integer(value) => Some(value as f64),
+            Value::Huge(ref digits) => digits.parse().ok(),
             _ => None,
         }
     }

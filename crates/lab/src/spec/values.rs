@@ -113,7 +113,7 @@ impl Section<'_> {
         range: &RangeInclusive<f64>,
     ) -> f64 {
         let Some(node) = self.take(key) else { return default };
-        self.checked_quantity(key, node, dimension, range).unwrap_or(default)
+        self.checked_quantity(key, node, dimension, default, range).unwrap_or(default)
     }
 
     /// A quantity, or none where the key is absent or "none".
@@ -121,10 +121,11 @@ impl Section<'_> {
         &mut self,
         key: &'static str,
         dimension: Dimension,
+        example: f64,
         range: &RangeInclusive<f64>,
     ) -> Option<f64> {
         let node = self.take(key).filter(|node| !is_none(node))?;
-        self.checked_quantity(key, node, dimension, range)
+        self.checked_quantity(key, node, dimension, example, range)
     }
 
     /// A quantity at hand, in SI, if it is one of the dimension and inside of the range.
@@ -133,9 +134,10 @@ impl Section<'_> {
         key: &str,
         node: &Node,
         dimension: Dimension,
+        example: f64,
         range: &RangeInclusive<f64>,
     ) -> Option<f64> {
-        let example = with_unit(range.start().max(range.end().min(1.0)), dimension);
+        let example = with_unit(example, dimension);
         let units = dimension.symbols().join(", ");
         let hint = Some(match dimension {
             Dimension::None => "it is a pure number".to_owned(),
@@ -188,12 +190,13 @@ impl Section<'_> {
         let hint = || Some(format!("the default is {}", show_list(&default)));
         match &node.value {
             Value::List(items) if items.len() == length => {
-                let checked = items.iter().map(|item| self.checked_number(key, item, range, hint().unwrap_or_default()));
+                let checked =
+                    items.iter().map(|item| self.checked_number(key, item, range, hint().unwrap_or_default()));
                 // All items are looked at before the first wrong one ends it.
                 checked.collect::<Vec<_>>().into_iter().collect::<Option<_>>().unwrap_or(default)
             }
             Value::List(_) => {
-                self.wrong(key, node, &format!("has to have {length}: one per observation"), hint());
+                self.wrong(key, node, &format!("is not of length {length}: one number per observation"), hint());
                 default
             }
             _ => {
@@ -228,8 +231,8 @@ impl Section<'_> {
                 }
                 counts
             }
-            Value::List(_) => {
-                self.wrong(key, node, &format!("has more than the {most} that are possible"), hint());
+            Value::List(items) => {
+                self.wrong(key, node, &format!("has {} items, but at most {most} are possible", items.len()), hint());
                 default.to_vec()
             }
             _ => {
@@ -246,10 +249,12 @@ fn is_none(node: &Node) -> bool {
 }
 
 /// A whole number, also where it is written as a real one.
-fn whole(node: &Node) -> Option<i64> {
+fn whole(node: &Node) -> Option<i128> {
     match node.value {
-        Value::Integer(value) => Some(value),
-        Value::Float(value) if value.fract() == 0.0 && value.abs() <= EXACT => Some(value as i64),
+        Value::Integer(value) => Some(value.into()),
+        // Beyond 64 bits it is outside of any limits; how far does not matter.
+        Value::Huge(ref digits) => Some(if digits.starts_with('-') { i128::MIN } else { i128::MAX }),
+        Value::Float(value) if value.fract() == 0.0 && value.abs() <= EXACT => Some(value as i128),
         _ => None,
     }
 }

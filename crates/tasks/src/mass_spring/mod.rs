@@ -45,6 +45,24 @@
 //!
 //! # End
 //! Truncated after 1000 actions of 10 ms. Never terminated.
+//!
+//! # Example
+//! ```
+//! use hwasp_core::{Environment, MakeEnvironment, Purpose, stream};
+//! use hwasp_tasks::mass_spring::{MassSpring, MassSpringSettings};
+//!
+//! let problem = MassSpring::stiffness(MassSpringSettings { count: 50, ..Default::default() })?;
+//! let (law, mut env) = (problem.law(), problem.make(None));
+//! env.reset(&mut stream(0, Purpose::TrainingReset, 0, 0));
+//!
+//! let (design, command) = ([problem.optimum() / 50.0; 50], [0.5]); // N/m each, N
+//! let (mut state, mut effort) = ([0.0; 4], [0.0]);
+//! env.state(&mut state);
+//! law.effort(&design, &command, &state, &mut effort);
+//! let step = env.step(&effort, &command);
+//! assert!(step.reward < 0.0 && step.end.is_none());
+//! # Ok::<(), hwasp_tasks::mass_spring::MassSpringError>(())
+//! ```
 
 mod bar;
 mod plant;

@@ -1,0 +1,200 @@
+//! A perceptron as value function.
+
+use hwasp_core::{Batch, Purpose, stream};
+use hwasp_diff::{Activation, Mlp, MlpTape};
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::minibatch::BLOCK;
+
+/// Settings of an [`MlpBaseline`].
+///
+/// | name | default | purpose |
+/// |---|---|---|
+/// | `hidden` | `[32, 32]` | widths of the hidden tanh layers |
+/// | `learning_rate` | 1e-3 | of Adam |
+/// | `learning_rate_final` | 1 | fraction of it left at the end of a linear decay |
+/// | `epochs` | 4 | passes over a batch |
+/// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
+/// | `max_grad_norm` | 0.5 | longest gradient |
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MlpBaselineConfig {
+    /// Widths of the hidden layers.
+    pub hidden: Vec<usize>,
+    /// Step size of Adam at the start.
+    pub learning_rate: f64,
+    /// What fraction of it is left at the end.
+    pub learning_rate_final: f64,
+    /// Passes over a batch.
+    pub epochs: usize,
+    /// Rows of a gradient step; 0 for the whole batch.
+    pub minibatch_rows: usize,
+    /// Longest gradient.
+    pub max_grad_norm: Option<f64>,
+}
+
+impl Default for MlpBaselineConfig {
+    fn default() -> Self {
+        Self {
+            hidden: vec![32, 32],
+            learning_rate: 1e-3,
+            learning_rate_final: 1.0,
+            epochs: 4,
+            minibatch_rows: 1000,
+            max_grad_norm: Some(0.5),
+        }
+    }
+}
+
+/// V(s) = mean + std·network(s), where mean and std follow the targets and the last layer is corrected whenever they
+/// move, so that V does not jump (PopArt: van Hasselt et al. 2016, eqs. 9 and 10).
+#[derive(Debug)]
+pub struct MlpBaseline {
+    config: MlpBaselineConfig,
+    network: Mlp,
+    params: Vec<f32>,
+    adam: Adam,
+    /// Running mean and second moment of the targets; none before the first fit.
+    moments: Option<(f64, f64)>,
+    seed: u64,
+    tape: MlpTape<f32>,
+}
+
+/// How far the running moments move towards each batch.
+const MOMENT_RATE: f64 = 0.1;
+
+impl MlpBaseline {
+    /// Zero or near zero everywhere until the first fit.
+    pub fn new(config: MlpBaselineConfig, obs_dim: usize, seed: u64) -> Self {
+        let mut sizes = vec![obs_dim];
+        sizes.extend(&config.hidden);
+        sizes.push(1);
+        let network = Mlp::new(&sizes, Activation::Tanh, Activation::Identity);
+        let mut weights = stream(seed, Purpose::Baseline, 0, 0);
+        let params = network.init(0.1, || weights.random::<f64>());
+        let adam = Adam::new(AdamConfig::default(), params.len());
+        let tape = network.tape(BLOCK);
+        Self { config, network, params, adam, moments: None, seed, tape }
+    }
+
+    fn scale(&self) -> (f64, f64) {
+        self.moments.map_or((0.0, 1.0), |(mean, square)| (mean, (square - mean * mean).max(1e-8).sqrt()))
+    }
+
+    /// V of every row, and of the state after each episode.
+    pub fn predict(&mut self, batch: &Batch) -> (Vec<f32>, Vec<f32>) {
+        let (mean, std) = self.scale();
+        self.network.bind(&self.params, &mut self.tape);
+        let last: Vec<f32> = batch.episodes.iter().flat_map(|e| e.last_obs.iter().copied()).collect();
+        let obs_dim = self.network.inputs();
+        let mut run = |obs: &[f32]| {
+            let mut values = Vec::with_capacity(obs.len() / obs_dim);
+            for block in obs.chunks(BLOCK * obs_dim) {
+                self.network.forward(block, block.len() / obs_dim, &mut self.tape);
+                let (output, stride) = self.tape.output();
+                values.extend(output.iter().step_by(stride).map(|&v| (mean + std * f64::from(v)) as f32));
+            }
+            values
+        };
+        (run(&batch.obs), run(&last))
+    }
+
+    /// Moves the running moments towards those of `targets` and keeps V as it is.
+    fn follow(&mut self, targets: &[f32]) {
+        let n = targets.len().max(1) as f64;
+        let mean = targets.iter().map(|&t| f64::from(t)).sum::<f64>() / n;
+        let square = targets.iter().map(|&t| f64::from(t) * f64::from(t)).sum::<f64>() / n;
+        let (old_mean, old_std) = self.scale();
+        self.moments = Some(
+            self.moments
+                .map_or((mean, square), |(m, s)| (m + MOMENT_RATE * (mean - m), s + MOMENT_RATE * (square - s))),
+        );
+        let (mean, std) = self.scale();
+        let (weights, bias) = self.network.last_layer();
+        for w in &mut self.params[weights] {
+            *w = (f64::from(*w) * old_std / std) as f32;
+        }
+        for b in &mut self.params[bias] {
+            *b = ((old_std * f64::from(*b) + old_mean - mean) / std) as f32;
+        }
+    }
+
+    /// Several epochs of Adam on the squared error. The order of rows comes from the stream of this iteration.
+    pub fn fit(&mut self, batch: &Batch, targets: &[f32], progress: f64, iteration: u64) {
+        self.follow(targets);
+        let (mean, std) = self.scale();
+        let (rows, obs_dim) = (batch.rows(), self.network.inputs());
+        let minibatch = if self.config.minibatch_rows == 0 { rows } else { self.config.minibatch_rows };
+        let decay = 1.0 + (self.config.learning_rate_final - 1.0) * progress;
+        let rate = vec![(self.config.learning_rate * decay) as f32; self.params.len()];
+        let mut order: Vec<u32> = (0..rows as u32).collect();
+        let mut shuffle = stream(self.seed, Purpose::Baseline, 1, iteration);
+        let mut gradient = vec![0.0; self.params.len()];
+        let mut obs = vec![0.0; BLOCK * obs_dim];
+        let mut cotangent = vec![0.0; BLOCK];
+        for _ in 0..self.config.epochs {
+            order.shuffle(&mut shuffle);
+            for indices in order.chunks(minibatch) {
+                self.network.bind(&self.params, &mut self.tape);
+                let weight = 1.0 / indices.len() as f32;
+                for block in indices.chunks(BLOCK) {
+                    let rows = block.len();
+                    for (to, &i) in obs.chunks_exact_mut(obs_dim).zip(block) {
+                        to.copy_from_slice(&batch.obs[i as usize * obs_dim..][..obs_dim]);
+                    }
+                    let obs = &obs[..rows * obs_dim];
+                    self.network.forward(obs, rows, &mut self.tape);
+                    let (output, stride) = self.tape.output();
+                    for ((c, &v), &i) in cotangent.iter_mut().zip(output.iter().step_by(stride)).zip(block) {
+                        let target = (f64::from(targets[i as usize]) - mean) / std;
+                        *c = (v - target as f32) * weight;
+                    }
+                    self.network.vjp(obs, &cotangent[..rows], &mut self.tape);
+                }
+                gradient.fill(0.0);
+                self.network.gradient(&self.tape, &mut gradient);
+                clip_norm(&mut gradient, self.config.max_grad_norm);
+                self.adam.step(&mut self.params, &gradient, &rate);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwasp_core::{End, Episode};
+
+    fn batch(rows: usize) -> (Batch, Vec<f32>) {
+        let obs: Vec<f32> = (0..rows).map(|i| ((i * 37 % 101) as f32) / 50.0 - 1.0).collect();
+        let targets = obs.iter().map(|o| -300.0 + 80.0 * o * o).collect();
+        let episodes = vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5] }];
+        (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)
+    }
+
+    #[test]
+    fn learns_a_parabola_far_from_zero() {
+        let (batch, targets) = batch(400);
+        let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 200, ..MlpBaselineConfig::default() };
+        let mut baseline = MlpBaseline::new(config, 1, 5);
+        baseline.fit(&batch, &targets, 0.0, 0);
+        let (values, last) = baseline.predict(&batch);
+        let worst = values.iter().zip(&targets).map(|(v, t)| (v - t).abs()).fold(0.0, f32::max);
+        assert!(worst < 4.0, "{worst} off a range of 80");
+        assert!((last[0] + 280.0).abs() < 4.0, "{}", last[0]);
+    }
+
+    #[test]
+    fn moving_the_moments_does_not_move_the_values() {
+        let (batch, targets) = batch(100);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 5);
+        baseline.fit(&batch, &targets, 0.0, 0);
+        let before = baseline.predict(&batch).0;
+        baseline.follow(&vec![1000.0; 100]);
+        for (a, b) in before.iter().zip(baseline.predict(&batch).0) {
+            assert!((a - b).abs() < 1e-2, "{a} became {b}");
+        }
+    }
+}

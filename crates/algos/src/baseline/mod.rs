@@ -1,0 +1,59 @@
+//! Value baselines: what return to expect from a state.
+
+mod linear;
+mod mlp;
+
+pub use linear::LinearBaseline;
+pub use mlp::{MlpBaseline, MlpBaselineConfig};
+
+use hwasp_core::Batch;
+use serde::{Deserialize, Serialize};
+
+use crate::gae::Advantages;
+
+/// Which baseline.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum BaselineConfig {
+    /// Ridge regression on observation and time features.
+    Linear {
+        /// The ridge.
+        ridge: f64,
+    },
+    /// A perceptron.
+    Mlp(MlpBaselineConfig),
+}
+
+/// A value baseline.
+#[derive(Debug)]
+pub enum Baseline {
+    /// See [`LinearBaseline`].
+    Linear(LinearBaseline),
+    /// See [`MlpBaseline`].
+    Mlp(Box<MlpBaseline>),
+}
+
+impl Baseline {
+    /// A fresh one for observations of `obs_dim` components.
+    pub fn new(config: &BaselineConfig, obs_dim: usize, seed: u64) -> Self {
+        match config {
+            BaselineConfig::Linear { ridge } => Self::Linear(LinearBaseline::new(obs_dim, *ridge)),
+            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, seed))),
+        }
+    }
+
+    /// V of every row, and of the state after each episode.
+    pub fn predict(&mut self, batch: &Batch) -> (Vec<f32>, Vec<f32>) {
+        match self {
+            Self::Linear(linear) => linear.predict(batch),
+            Self::Mlp(mlp) => mlp.predict(batch),
+        }
+    }
+
+    /// Learns from the batch: the linear one the discounted return, the perceptron the λ-return.
+    pub fn fit(&mut self, batch: &Batch, targets: &Advantages, progress: f64, iteration: u64) {
+        match self {
+            Self::Linear(linear) => linear.fit(batch, &targets.discounted_return),
+            Self::Mlp(mlp) => mlp.fit(batch, &targets.lambda_return, progress, iteration),
+        }
+    }
+}

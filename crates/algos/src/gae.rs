@@ -1,0 +1,105 @@
+//! Generalised advantage estimation (Schulman et al. 2016, eq. 16).
+
+use hwasp_core::{Batch, End};
+
+/// What [`advantages`] gives, one value per row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advantages {
+    /// Â_t = Σ_l (γλ)^l δ_{t+l} with δ_t = r_t + γ·V(s_{t+1}) - V(s_t).
+    pub advantage: Vec<f32>,
+    /// Â_t + V(s_t), the λ-return that a value function may learn.
+    pub lambda_return: Vec<f32>,
+    /// Σ_l γ^l r_{t+l} to the end of the episode, and nothing beyond.
+    pub discounted_return: Vec<f32>,
+}
+
+/// The advantages of a batch of whole episodes.
+///
+/// `values` are V(s) of every row, `last_values` V of the state after each episode's last row. That state counts where an
+/// episode was truncated and `bootstrap_truncated` is set; a terminated episode has no future.
+pub fn advantages(
+    batch: &Batch,
+    values: &[f32],
+    last_values: &[f32],
+    (discount, gae_lambda): (f64, f64),
+    bootstrap_truncated: bool,
+) -> Advantages {
+    let rows = batch.rows();
+    let mut out =
+        Advantages { advantage: vec![0.0; rows], lambda_return: vec![0.0; rows], discounted_return: vec![0.0; rows] };
+    for (episode, &last_value) in batch.episodes.iter().zip(last_values) {
+        let bootstrap = bootstrap_truncated && episode.end == End::Truncated;
+        let mut next_value = if bootstrap { f64::from(last_value) } else { 0.0 };
+        let (mut advantage, mut total) = (0.0, 0.0);
+        for t in episode.rows.clone().rev() {
+            let (reward, value) = (batch.reward[t], f64::from(values[t]));
+            let delta = reward + discount * next_value - value;
+            advantage = delta + discount * gae_lambda * advantage;
+            total = reward + discount * total;
+            out.advantage[t] = advantage as f32;
+            out.lambda_return[t] = (advantage + value) as f32;
+            out.discounted_return[t] = total as f32;
+            next_value = value;
+        }
+    }
+    out
+}
+
+/// Centres to mean 0 and scales to variance 1: (A - mean)/sqrt(var + 1e-8), over the whole batch.
+pub fn normalize(advantage: &mut [f32]) {
+    let n = advantage.len().max(1) as f64;
+    let mean = advantage.iter().map(|&a| f64::from(a)).sum::<f64>() / n;
+    let var = advantage.iter().map(|&a| (f64::from(a) - mean).powi(2)).sum::<f64>() / n;
+    let scale = 1.0 / (var + 1e-8).sqrt();
+    for a in advantage {
+        *a = ((f64::from(*a) - mean) * scale) as f32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwasp_core::Episode;
+
+    /// Two episodes: three steps truncated, two steps terminated. γ = 0.5, λ = 0.5.
+    fn batch() -> Batch {
+        Batch {
+            reward: vec![1.0, 2.0, 3.0, 4.0, 5.0],
+            episodes: vec![
+                Episode { rows: 0..3, end: End::Truncated, last_obs: vec![] },
+                Episode { rows: 3..5, end: End::Terminated, last_obs: vec![] },
+            ],
+            ..Batch::default()
+        }
+    }
+
+    #[test]
+    fn by_hand() {
+        let values = [10.0, 20.0, 30.0, 40.0, 50.0];
+        let got = advantages(&batch(), &values, &[8.0, 99.0], (0.5, 0.5), true);
+        // First episode, backwards:
+        //   δ2 = 3 + 0.5·8 - 30 = -23;            A2 = -23
+        //   δ1 = 2 + 0.5·30 - 20 = -3;            A1 = -3 + 0.25·(-23) = -8.75
+        //   δ0 = 1 + 0.5·20 - 10 = 1;             A0 = 1 + 0.25·(-8.75) = -1.1875
+        // Second, terminated, so that 99 does not count:
+        //   δ4 = 5 - 50 = -45;                    A4 = -45
+        //   δ3 = 4 + 0.5·50 - 40 = -11;           A3 = -11 + 0.25·(-45) = -22.25
+        assert_eq!(got.advantage, [-1.1875, -8.75, -23.0, -22.25, -45.0]);
+        assert_eq!(got.lambda_return, [8.8125, 11.25, 7.0, 17.75, 5.0]);
+        assert_eq!(got.discounted_return, [2.75, 3.5, 3.0, 6.5, 5.0]);
+    }
+
+    #[test]
+    fn the_authors_convention_ends_at_truncation() {
+        let got = advantages(&batch(), &[0.0; 5], &[8.0, 99.0], (0.5, 1.0), false);
+        assert_eq!(got.advantage, got.discounted_return);
+    }
+
+    #[test]
+    fn normalised_advantages_have_mean_zero_and_variance_one() {
+        let mut a = [1.0, 2.0, 3.0, 6.0];
+        normalize(&mut a);
+        assert!(a.iter().sum::<f32>().abs() < 1e-6);
+        assert!((a.iter().map(|a| a * a).sum::<f32>() / 4.0 - 1.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,348 @@
+//! Proximal policy optimisation (Schulman et al. 2017).
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
+use hwasp_diff::fast::{exp, vectorised};
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::baseline::{Baseline, BaselineConfig};
+use crate::gae::{advantages, normalize};
+use crate::learner::{LearnError, Learner, UpdateMetrics};
+use crate::minibatch::{BLOCK, Minibatch};
+
+/// Settings of [`Ppo`].
+///
+/// | name | default | purpose |
+/// |---|---|---|
+/// | `discount` | 0.99 | γ |
+/// | `gae_lambda` | 0.95 | λ of the advantages |
+/// | `clip_ratio` | 0.2 | ε of the clipped surrogate |
+/// | `epochs` | 4 | passes over a batch |
+/// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
+/// | `learning_rate` | 1e-3 | of Adam |
+/// | `learning_rate_final` | 1 | fraction of it left at the end of a linear decay |
+/// | `design_lr_scale` | 1 | times the rate, for design parameters |
+/// | `log_std_lr_scale` | 1 | times the rate, for log standard deviations |
+/// | `entropy_coef` | 0 | weight of the entropy in the objective |
+/// | `max_grad_norm` | 0.5 | longest gradient |
+/// | `target_kl` | none | epochs end when the KL divergence passes 1.5 times this |
+/// | `normalize_advantages` | true | mean 0, variance 1 over the batch |
+/// | `bootstrap_truncated` | true | value the state after a truncated episode; the paper's toolkit does not |
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PpoConfig {
+    /// γ, of returns and advantages.
+    pub discount: f64,
+    /// λ of the advantages.
+    pub gae_lambda: f64,
+    /// ε of the clipped surrogate (eq. 7).
+    pub clip_ratio: f64,
+    /// Passes over a batch.
+    pub epochs: usize,
+    /// Rows of a gradient step; 0 for the whole batch.
+    pub minibatch_rows: usize,
+    /// Step size of Adam at the start.
+    pub learning_rate: f64,
+    /// What fraction of it is left at the end.
+    pub learning_rate_final: f64,
+    /// Times the rate, for design parameters.
+    pub design_lr_scale: f64,
+    /// Times the rate, for log standard deviations.
+    pub log_std_lr_scale: f64,
+    /// Adam's epsilon.
+    pub adam_epsilon: f64,
+    /// Weight of the entropy in the objective (c₂ of eq. 9).
+    pub entropy_coef: f64,
+    /// Longest gradient.
+    pub max_grad_norm: Option<f64>,
+    /// Epochs end when the KL divergence passes 1.5 times this.
+    pub target_kl: Option<f64>,
+    /// Whether advantages are centred and scaled over the batch.
+    pub normalize_advantages: bool,
+    /// Whether the state after a truncated episode is valued.
+    pub bootstrap_truncated: bool,
+}
+
+impl Default for PpoConfig {
+    fn default() -> Self {
+        Self {
+            discount: 0.99,
+            gae_lambda: 0.95,
+            clip_ratio: 0.2,
+            epochs: 4,
+            minibatch_rows: 1000,
+            learning_rate: 1e-3,
+            learning_rate_final: 1.0,
+            design_lr_scale: 1.0,
+            log_std_lr_scale: 1.0,
+            adam_epsilon: 1e-8,
+            entropy_coef: 0.0,
+            max_grad_norm: Some(0.5),
+            target_kl: None,
+            normalize_advantages: true,
+            bootstrap_truncated: true,
+        }
+    }
+}
+
+/// PPO with its baseline.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PpoSettings {
+    /// Of the policy's updates.
+    pub ppo: PpoConfig,
+    /// The value baseline.
+    pub baseline: BaselineConfig,
+}
+
+/// The learner: a policy's parameters, their optimiser and a baseline.
+pub struct Ppo<P: Policy> {
+    config: PpoConfig,
+    policy: Arc<P>,
+    params: Vec<f32>,
+    adam: Adam,
+    baseline: Baseline,
+    seed: u64,
+    /// Working memory.
+    step: GradientStep<P>,
+}
+
+/// Everything one gradient step writes, allocated once.
+struct GradientStep<P: Policy> {
+    tape: P::Tape,
+    minibatch: Minibatch,
+    cotangent: Vec<f32>,
+    log_std: Vec<f32>,
+    log_std_gradient: Vec<f32>,
+    gradient: Vec<f32>,
+}
+
+/// Sums over the rows of one gradient step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Totals {
+    kl: f64,
+    clipped: f64,
+    rows: usize,
+}
+
+impl<P: Policy> Ppo<P> {
+    /// Starts from `params`. `seed` names the streams of minibatches and of the baseline.
+    pub fn new(settings: &PpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
+        let config = settings.ppo.clone();
+        let actions = policy.action_dim();
+        let step = GradientStep {
+            tape: policy.tape(BLOCK),
+            minibatch: Minibatch::default(),
+            cotangent: vec![0.0; actions * BLOCK],
+            log_std: vec![0.0; actions],
+            log_std_gradient: vec![0.0; actions],
+            gradient: vec![0.0; params.len()],
+        };
+        let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
+        let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), seed);
+        Self { config, policy, params, adam, baseline, seed, step }
+    }
+
+    /// Learning rates of all parameters at `progress` of training.
+    fn learning_rates(&self, progress: f64) -> Vec<f32> {
+        let config = &self.config;
+        let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
+        let mut rates = vec![rate as f32; self.params.len()];
+        for group in self.policy.groups() {
+            let scale = match group.name {
+                "design" => config.design_lr_scale,
+                "log_std" => config.log_std_lr_scale,
+                _ => 1.0,
+            };
+            rates[group.range.clone()].fill((rate * scale) as f32);
+        }
+        rates
+    }
+
+    fn dims(&self) -> (usize, usize, usize) {
+        (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim())
+    }
+
+    /// The epochs of one update; leaves the parameters changed even where it fails.
+    fn optimise(
+        &mut self,
+        batch: &Batch,
+        advantage: &[f32],
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
+        let rates = self.learning_rates(progress);
+        let rows = batch.rows();
+        let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
+        let size = if whole { rows } else { self.config.minibatch_rows };
+        let mut order: Vec<u32> = (0..rows as u32).collect();
+        let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
+        let mut metrics = UpdateMetrics::default();
+        let mut steps = 0;
+        for epoch in 0..self.config.epochs {
+            if !whole {
+                order.shuffle(&mut shuffle);
+            }
+            let mut epoch_totals = Totals::default();
+            for indices in order.chunks(size.max(1)) {
+                // The whole batch in its own order needs gathering but once.
+                if !whole || epoch == 0 {
+                    let dims = self.dims();
+                    self.step.minibatch.gather(batch, advantage, indices, dims);
+                }
+                let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
+                metrics.grad_norm += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
+                steps += 1;
+                if !metrics.grad_norm.is_finite() {
+                    return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
+                }
+                self.adam.step(&mut self.params, &self.step.gradient, &rates);
+                epoch_totals.kl += totals.kl;
+                epoch_totals.clipped += totals.clipped;
+                epoch_totals.rows += totals.rows;
+            }
+            let n = epoch_totals.rows.max(1) as f64;
+            metrics.kl = epoch_totals.kl / n;
+            metrics.clip_fraction = epoch_totals.clipped / n;
+            metrics.epochs = epoch + 1;
+            if self.config.target_kl.is_some_and(|limit| metrics.kl > 1.5 * limit) {
+                break;
+            }
+        }
+        metrics.grad_norm /= f64::from(steps).max(1.0);
+        self.policy.log_std(&self.params, progress, &mut self.step.log_std);
+        metrics.entropy = gaussian::entropy(&self.step.log_std);
+        Ok(metrics)
+    }
+}
+
+impl<P: Policy> Learner for Ppo<P> {
+    fn params(&self) -> &[f32] {
+        &self.params
+    }
+
+    fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
+        let (values, last_values) = self.baseline.predict(batch);
+        let discounting = (self.config.discount, self.config.gae_lambda);
+        let mut targets = advantages(batch, &values, &last_values, discounting, self.config.bootstrap_truncated);
+        if !targets.advantage.iter().all(|a| a.is_finite()) {
+            return Err(LearnError::NotFinite { what: "an advantage", iteration });
+        }
+        if self.config.normalize_advantages {
+            normalize(&mut targets.advantage);
+        }
+        let before = (self.params.clone(), self.adam.clone());
+        let result = self.optimise(batch, &targets.advantage, progress, iteration).and_then(|metrics| {
+            let sound = self.params.iter().all(|p| p.is_finite());
+            sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+        });
+        match &result {
+            Ok(_) => self.baseline.fit(batch, &targets, progress, iteration),
+            Err(_) => (self.params, self.adam) = before,
+        }
+        result
+    }
+}
+
+impl<P: Policy> GradientStep<P> {
+    /// The gradient of the loss over the minibatch, left in `gradient`:
+    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term).
+    fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> Totals {
+        policy.bind(params, &mut self.tape);
+        policy.log_std(params, progress, &mut self.log_std);
+        self.log_std_gradient.fill(0.0);
+        let mut totals = Totals { rows: self.minibatch.count, ..Totals::default() };
+        for block in self.minibatch.blocks() {
+            let rows = self.minibatch.rows(&block);
+            let mean = policy.forward(&rows, &mut self.tape);
+            let surrogate = Surrogate {
+                minibatch: &self.minibatch,
+                block,
+                mean,
+                log_std: &self.log_std,
+                clip_ratio: config.clip_ratio as f32,
+            };
+            let (kl, clipped) = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
+            totals.kl += kl;
+            totals.clipped += clipped;
+            policy.vjp(&rows, &self.cotangent, &mut self.tape);
+        }
+        policy.gradient(&mut self.tape, &mut self.gradient);
+        if let Some(range) = policy.log_std_params() {
+            for (to, from) in self.gradient[range].iter_mut().zip(&self.log_std_gradient) {
+                // The entropy of a Gaussian grows by one nat per unit of log-std.
+                *to = from - config.entropy_coef as f32;
+            }
+        }
+        totals
+    }
+}
+
+/// The clipped surrogate of one block of rows.
+struct Surrogate<'a> {
+    minibatch: &'a Minibatch,
+    block: Range<usize>,
+    /// Means `[A × BLOCK]`.
+    mean: &'a [f32],
+    log_std: &'a [f32],
+    clip_ratio: f32,
+}
+
+impl Surrogate<'_> {
+    /// Writes the cotangents of the means `[A × BLOCK]` and adds those of the log standard deviations. Returns the sums of
+    /// the KL estimate (ρ - 1) - log ρ and of the clipped rows.
+    fn differentiate(&self, cotangent: &mut [f32], log_std_gradient: &mut [f32]) -> (f64, f64) {
+        vectorised(
+            #[inline(always)]
+            || self.differentiate_inlined(cotangent, log_std_gradient),
+        )
+    }
+
+    #[inline(always)]
+    fn differentiate_inlined(&self, cotangent: &mut [f32], log_std_gradient: &mut [f32]) -> (f64, f64) {
+        let count = self.block.len();
+        let old = &self.minibatch.log_prob[self.block.clone()];
+        let advantage = &self.minibatch.advantage[self.block.clone()];
+        let weight = -1.0 / self.minibatch.count as f32;
+        let mut log_prob = [0.0_f32; BLOCK];
+        log_prob.fill(-gaussian::log_norm(self.log_std) as f32);
+        let columns = || self.mean.chunks_exact(BLOCK).zip(self.log_std).enumerate();
+        for (j, (mean, &log_std)) in columns() {
+            let inverse = (-log_std).exp();
+            let action = self.minibatch.action(j, &self.block);
+            for ((p, a), m) in log_prob[..count].iter_mut().zip(action).zip(mean) {
+                let z = (a - m) * inverse;
+                *p = (-0.5 * z).mul_add(z, *p);
+            }
+        }
+        // d loss / d log-probability of each row; zero where the clip has taken over.
+        let mut pull = [0.0_f32; BLOCK];
+        let mut kl = [0.0_f32; BLOCK];
+        let mut clipped = [0.0_f32; BLOCK];
+        let (lo, hi) = (1.0 - self.clip_ratio, 1.0 + self.clip_ratio);
+        for r in 0..count {
+            let log_ratio = log_prob[r] - old[r];
+            let ratio = exp(log_ratio);
+            let a = advantage[r];
+            let outside = if a >= 0.0 { ratio > hi } else { ratio < lo };
+            pull[r] = if outside { 0.0 } else { weight * ratio * a };
+            kl[r] = ratio - 1.0 - log_ratio;
+            clipped[r] = f32::from(u8::from(outside));
+        }
+        for (j, (mean, &log_std)) in columns() {
+            let inverse = (-log_std).exp();
+            let action = self.minibatch.action(j, &self.block);
+            let out = &mut cotangent[j * BLOCK..][..count];
+            let mut lanes = [0.0_f32; 16];
+            for (r, out) in out.iter_mut().enumerate() {
+                let z = (action[r] - mean[r]) * inverse;
+                *out = pull[r] * z * inverse;
+                lanes[r % 16] += pull[r] * (z * z - 1.0);
+            }
+            log_std_gradient[j] += lanes.iter().sum::<f32>();
+        }
+        (f64::from(kl.iter().sum::<f32>()), f64::from(clipped.iter().sum::<f32>()))
+    }
+}

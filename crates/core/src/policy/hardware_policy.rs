@@ -1,0 +1,286 @@
+//! The paper's policy: controller and hardware as one differentiable function.
+
+use std::ops::Range;
+
+use hwasp_diff::{Activation, Mlp, MlpTape, Program, ProgramTape};
+use rand::RngExt;
+
+use super::compose::{Composition, PolicySpec};
+use super::{ParamGroup, Policy, Rows};
+use crate::design::DesignSpace;
+use crate::environment::{CommandPort, EnvSpec};
+use crate::placement::{Body, PlacementError};
+use crate::streams::{Purpose, stream};
+
+/// A perceptron composed with a hardware law (paper, section 4): π(a_new | s, a)·π(a | s) as one Gaussian.
+///
+/// Parameters: the controller's, then the unbounded stand-ins of the design parameters that are not fixed, then (where
+/// they are trained) the log standard deviations.
+#[derive(Clone, Debug)]
+pub struct HardwarePolicy {
+    spec: PolicySpec,
+    pub(super) controller: Mlp,
+    pub(super) composition: Composition,
+    groups: Vec<ParamGroup>,
+    pub(super) commands: Vec<CommandPort>,
+    state_dim: usize,
+}
+
+/// Working memory of a [`HardwarePolicy`].
+#[derive(Debug)]
+pub struct PolicyTape {
+    controller: MlpTape<f32>,
+    law: ProgramTape<f32>,
+    /// Inputs of the law: controller outputs, state, sampled design; and their cotangents or tangents.
+    columns: Vec<f32>,
+    moved_columns: Vec<f32>,
+    /// Means, and their tangents.
+    mean: Vec<f32>,
+    moved_mean: Vec<f32>,
+    /// Cotangents of the controller's outputs, row by row.
+    output_cotangent: Vec<f32>,
+    max_rows: usize,
+}
+
+impl HardwarePolicy {
+    /// Composes a policy for an environment.
+    pub fn new(spec: PolicySpec, env: &EnvSpec) -> Result<Self, PlacementError> {
+        let composition = spec.compose(env)?;
+        let mut sizes = vec![env.observation.len()];
+        sizes.extend(&spec.hidden);
+        sizes.push(env.command.len());
+        let output = if spec.squash { Activation::Tanh } else { Activation::Identity };
+        let controller = Mlp::new(&sizes, spec.activation, output);
+        let mut groups = Vec::new();
+        let mut at = 0;
+        let log_stds = if spec.noise.train { composition.layout.len() } else { 0 };
+        for (name, count) in
+            [("controller", controller.param_count()), ("design", composition.free.len()), ("log_std", log_stds)]
+        {
+            groups.push(ParamGroup { name, range: at..at + count });
+            at += count;
+        }
+        let commands = env.command.clone();
+        Ok(Self { spec, controller, composition, groups, commands, state_dim: env.state.len() })
+    }
+
+    /// What it was made of.
+    pub fn spec(&self) -> &PolicySpec {
+        &self.spec
+    }
+
+    /// Fresh parameters from the run's streams. The last layer's weights are scaled by `output_gain`.
+    pub fn init(&self, seed: u64, output_gain: f64) -> Vec<f32> {
+        let mut weights = stream(seed, Purpose::Weights, 0, 0);
+        let mut params = self.controller.init(output_gain, || weights.random::<f64>());
+        let u = self.space().sample_initial(&mut stream(seed, Purpose::Design, 0, 0));
+        params.extend(self.composition.free.iter().map(|&i| u[i] as f32));
+        if self.spec.noise.train {
+            params.extend(self.composition.noise.iter().map(|n| n.log_std as f32));
+        }
+        params
+    }
+
+    /// The design space of the law.
+    pub fn space(&self) -> &DesignSpace {
+        self.spec.law.design()
+    }
+
+    /// The whole design in SI: what the parameters say, and the fixed values.
+    pub fn design(&self, params: &[f32]) -> Vec<f64> {
+        let mut design: Vec<f64> =
+            self.spec.placements.iter().map(|p| if let crate::Placement::Fixed(v) = p { *v } else { 0.0 }).collect();
+        for (&i, &u) in self.composition.free.iter().zip(&params[self.range("design")]) {
+            design[i] = self.space().squash(i, f64::from(u));
+        }
+        design
+    }
+
+    /// The controller's part of a parameter vector.
+    pub fn controller_params<'p>(&self, params: &'p [f32]) -> &'p [f32] {
+        &params[self.range("controller")]
+    }
+
+    /// The controller.
+    pub fn controller(&self) -> &Mlp {
+        &self.controller
+    }
+
+    /// The composed law, as drawn by `hwasp graph`.
+    pub fn program(&self) -> &Program {
+        &self.composition.program
+    }
+
+    /// The name of every action component.
+    pub fn action_names(&self) -> &[String] {
+        self.composition.program.output_names()
+    }
+
+    pub(super) fn range(&self, name: &str) -> Range<usize> {
+        self.groups.iter().find(|g| g.name == name).map_or(0..0, |g| g.range.clone())
+    }
+
+    pub(crate) fn body(&self) -> Body {
+        Body::new(&self.spec.law, &self.spec.placements, &self.composition.layout, &self.commands)
+    }
+
+    /// What the controller sees of an observation in SI.
+    #[inline]
+    pub fn normalize(&self, observation: &[f64], out: &mut [f32]) {
+        let scaling = self.spec.observation_center.iter().zip(&self.spec.observation_scale);
+        for ((out, x), (center, scale)) in out.iter_mut().zip(observation).zip(scaling) {
+            *out = ((x - center) / scale) as f32;
+        }
+    }
+}
+
+impl PolicyTape {
+    /// Lays out the law's columns of a block.
+    fn fill_columns(&mut self, policy: &HardwarePolicy, rows: &Rows<'_>) {
+        let (count, stride) = (rows.count, self.max_rows);
+        let commands = policy.commands.len();
+        let (output, width) = self.controller.output();
+        for (j, column) in self.columns.chunks_exact_mut(stride).take(commands).enumerate() {
+            for (to, from) in column[..count].iter_mut().zip(output.chunks_exact(width)) {
+                *to = from[j];
+            }
+        }
+        let state = self.columns[commands * stride..].chunks_exact_mut(stride).take(policy.state_dim);
+        for (s, to) in state.enumerate() {
+            to[..count].copy_from_slice(&rows.state[s * rows.stride..][..count]);
+        }
+        let sampled = self.columns[(commands + policy.state_dim) * stride..].chunks_exact_mut(stride);
+        for (j, (to, &i)) in sampled.zip(&policy.composition.layout.sampled).enumerate() {
+            // The law saw the sample within its limits.
+            let (lo, hi) = policy.space().bounds(i);
+            for (to, from) in to[..count].iter_mut().zip(&rows.action[j * rows.stride..]) {
+                *to = from.clamp(lo as f32, hi as f32);
+            }
+        }
+    }
+}
+
+impl Policy for HardwarePolicy {
+    type Tape = PolicyTape;
+
+    fn param_count(&self) -> usize {
+        self.groups.last().map_or(0, |g| g.range.end)
+    }
+
+    fn groups(&self) -> &[ParamGroup] {
+        &self.groups
+    }
+
+    fn action_dim(&self) -> usize {
+        self.composition.layout.len()
+    }
+
+    fn obs_dim(&self) -> usize {
+        self.controller.inputs()
+    }
+
+    fn state_dim(&self) -> usize {
+        self.state_dim
+    }
+
+    fn log_std_params(&self) -> Option<Range<usize>> {
+        self.spec.noise.train.then(|| self.range("log_std"))
+    }
+
+    fn log_std(&self, params: &[f32], progress: f64, out: &mut [f32]) {
+        let trained = self.log_std_params().map(|range| &params[range]);
+        for (j, (out, noise)) in out.iter_mut().zip(&self.composition.noise).enumerate() {
+            let own = trained.map_or(noise.log_std, |t| f64::from(t[j]));
+            *out = (own + noise.anneal.map_or(0.0, |a| a.log_offset(progress))) as f32;
+        }
+    }
+
+    fn tape(&self, max_rows: usize) -> PolicyTape {
+        let program = &self.composition.program;
+        let columns = vec![0.0; program.column_names().len() * max_rows];
+        let mean = vec![0.0; self.action_dim() * max_rows];
+        PolicyTape {
+            controller: self.controller.tape(max_rows),
+            law: program.tape(max_rows),
+            moved_columns: columns.clone(),
+            columns,
+            moved_mean: mean.clone(),
+            mean,
+            output_cotangent: vec![0.0; self.commands.len() * max_rows],
+            max_rows,
+        }
+    }
+
+    fn bind(&self, params: &[f32], tape: &mut PolicyTape) {
+        self.controller.bind(&params[self.range("controller")], &mut tape.controller);
+        self.composition.program.bind(&params[self.range("design")], &mut tape.law);
+    }
+
+    fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut PolicyTape) -> &'t [f32] {
+        self.controller.forward(rows.obs, rows.count, &mut tape.controller);
+        tape.fill_columns(self, rows);
+        let stride = tape.max_rows;
+        self.composition.program.forward(&tape.columns, stride, rows.count, &mut tape.law, &mut tape.mean, stride);
+        &tape.mean
+    }
+
+    fn vjp(&self, rows: &Rows<'_>, cotangent: &[f32], tape: &mut PolicyTape) {
+        let stride = tape.max_rows;
+        self.composition.program.vjp(
+            &tape.columns,
+            stride,
+            rows.count,
+            cotangent,
+            stride,
+            &mut tape.law,
+            &mut tape.moved_columns,
+            stride,
+        );
+        let commands = self.commands.len();
+        let outputs = &mut tape.output_cotangent[..rows.count * commands];
+        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate() {
+            for (to, from) in outputs.chunks_exact_mut(commands).zip(column) {
+                to[j] = *from;
+            }
+        }
+        self.controller.vjp(rows.obs, outputs, &mut tape.controller);
+    }
+
+    fn gradient(&self, tape: &mut PolicyTape, gradient: &mut [f32]) {
+        gradient.fill(0.0);
+        self.controller.gradient(&tape.controller, &mut gradient[self.range("controller")]);
+        self.composition.program.vjp_uniform(&mut tape.law, &mut gradient[self.range("design")]);
+    }
+
+    fn add_cotangents(&self, tape: &mut PolicyTape, other: &PolicyTape) {
+        tape.controller.add_cotangents(&other.controller);
+        tape.law.add_uniform_cotangents(&other.law);
+    }
+
+    fn bind_tangent(&self, tangent: &[f32], tape: &mut PolicyTape) {
+        self.controller.bind_tangent(&tangent[self.range("controller")], &mut tape.controller);
+        self.composition.program.bind_tangent(&tangent[self.range("design")], &mut tape.law);
+    }
+
+    fn jvp<'t>(&self, rows: &Rows<'_>, tape: &'t mut PolicyTape) -> &'t [f32] {
+        self.controller.jvp(rows.obs, &mut tape.controller);
+        let stride = tape.max_rows;
+        let (output, width) = tape.controller.tangent();
+        tape.moved_columns.fill(0.0);
+        for (j, column) in tape.moved_columns.chunks_exact_mut(stride).take(self.commands.len()).enumerate() {
+            for (to, from) in column[..rows.count].iter_mut().zip(output.chunks_exact(width)) {
+                *to = from[j];
+            }
+        }
+        self.composition.program.jvp(
+            &tape.columns,
+            &tape.moved_columns,
+            stride,
+            rows.count,
+            &mut tape.law,
+            &mut tape.moved_mean,
+            stride,
+        );
+        &tape.moved_mean
+    }
+}

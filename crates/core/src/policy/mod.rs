@@ -1,0 +1,81 @@
+//! Policies: from parameters to a diagonal Gaussian over actions.
+//!
+//! [`Policy`] is all that a gradient learner knows. [`HardwarePolicy`] is the paper's: a perceptron composed with a
+//! hardware law, each design parameter in the graph, in the action, or fixed.
+
+mod actor;
+mod compose;
+mod hardware_policy;
+mod noise;
+
+pub use actor::Actor;
+pub use compose::PolicySpec;
+pub use hardware_policy::{HardwarePolicy, PolicyTape};
+pub use noise::{Anneal, Noise};
+
+use std::ops::Range;
+
+/// Parameters that are treated alike by an optimiser.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParamGroup {
+    /// `controller`, `design` or `log_std`.
+    pub name: &'static str,
+    /// Where they lie in the parameter vector.
+    pub range: Range<usize>,
+}
+
+/// A block of rows of a batch, for one pass.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<'a> {
+    /// The number of rows, B.
+    pub count: usize,
+    /// Controller inputs `[B × obs_dim]`, row by row.
+    pub obs: &'a [f32],
+    /// The law's state `[state_dim × stride]`, column by column.
+    pub state: &'a [f32],
+    /// The actions that were taken `[action_dim × stride]`, column by column: the law of a policy that places some of its
+    /// design in the action reads that part of them.
+    pub action: &'a [f32],
+    /// The distance between columns, at least B.
+    pub stride: usize,
+}
+
+/// A differentiable function from parameters to the mean `[A × B]` and log standard deviation `[A]` of a diagonal Gaussian.
+///
+/// Work goes in blocks: bind parameters once; then per block forward and vjp (or jvp); then collect the gradient.
+pub trait Policy: Send + Sync {
+    /// Working memory.
+    type Tape: Send;
+
+    /// The length of the parameter vector.
+    fn param_count(&self) -> usize;
+    /// How the parameter vector divides.
+    fn groups(&self) -> &[ParamGroup];
+    /// The number of action components, A.
+    fn action_dim(&self) -> usize;
+    /// The number of controller inputs.
+    fn obs_dim(&self) -> usize;
+    /// The number of state columns.
+    fn state_dim(&self) -> usize;
+    /// Where the log standard deviations lie in the parameter vector; `None` where they are not trained.
+    fn log_std_params(&self) -> Option<Range<usize>>;
+    /// The log standard deviations `[A]` at `progress` in [0, 1] of the training.
+    fn log_std(&self, params: &[f32], progress: f64, out: &mut [f32]);
+
+    /// Working memory for blocks of up to `max_rows` rows.
+    fn tape(&self, max_rows: usize) -> Self::Tape;
+    /// Takes over a parameter vector and clears the sums of cotangents.
+    fn bind(&self, params: &[f32], tape: &mut Self::Tape);
+    /// The means of a block, `[A × tape rows]` column by column; the stride is the tape's `max_rows`.
+    fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut Self::Tape) -> &'t [f32];
+    /// Adds the gradient of Σ cotangent·mean over the block of the last forward; `cotangent` is laid out as the means.
+    fn vjp(&self, rows: &Rows<'_>, cotangent: &[f32], tape: &mut Self::Tape);
+    /// Writes the gradient summed over all blocks since [`bind`](Self::bind); zero for the log standard deviations.
+    fn gradient(&self, tape: &mut Self::Tape, gradient: &mut [f32]);
+    /// Adds the sums of cotangents of a tape that worked on other blocks.
+    fn add_cotangents(&self, tape: &mut Self::Tape, other: &Self::Tape);
+    /// Takes over a direction in parameter space.
+    fn bind_tangent(&self, tangent: &[f32], tape: &mut Self::Tape);
+    /// The means' tangents along it over the block of the last forward, laid out as the means.
+    fn jvp<'t>(&self, rows: &Rows<'_>, tape: &'t mut Self::Tape) -> &'t [f32];
+}

@@ -1,0 +1,181 @@
+//! Experiment files: TOML becomes a [`Spec`] in which nothing is left open, or a list of everything that is wrong with it.
+//!
+//! An experiment has layers, and the later ones win: the file; its `[methods.<method>]` tables, which hold the same
+//! tables as the file does; what the command line sets. A place in one of them goes with every value, so that each
+//! [`Fault`] can show its line. Files are taken for hostile: their size, their counts and their numbers have limits.
+//!
+//! ```
+//! let layers = hwasp_lab::spec::load("mass-spring")?.with_override("ppo.clip_ratio", "0.1");
+//! let spec = hwasp_lab::spec::resolve(layers, Some("minimal"))?;
+//! assert_eq!(spec.ppo.clip_ratio, 0.1);
+//!
+//! // What a run folder keeps gives the same experiment again.
+//! let again = hwasp_lab::spec::Layers::from_text("experiment.toml", &spec.to_toml()?)?;
+//! assert_eq!(hwasp_lab::spec::resolve(again, None)?, spec);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod builtin;
+mod controller;
+mod design;
+mod fault;
+mod layers;
+mod learner;
+mod names;
+mod noise;
+mod quantity;
+mod section;
+mod source;
+mod suggest;
+mod task;
+mod train;
+mod tree;
+mod values;
+
+use serde::Serialize;
+
+pub use builtin::{EXPERIMENTS, load};
+pub use controller::{ActivationKind, ControllerSpec, MOST_LAYERS, WIDEST_LAYER};
+pub use design::{DesignSpec, InitialSpec, Place, PlacedRange};
+pub use fault::{Excerpt, Fault, SpecErrors};
+pub use layers::{LONGEST_FILE, Layers};
+pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec};
+pub use noise::{EffortSpec, NoiseSpec};
+pub use task::{
+    BarProblem, GroupSpec, InterfaceKind, MOST_SEGMENTS, MOST_STEPS, MassSpringSpec, Problem, ProblemKind,
+    ReachProblem, RewardKind, StiffnessProblem, TaskSpec,
+};
+pub use train::{MOST_ROWS, TrainSpec};
+
+use names::named;
+use section::{Reader, Section};
+use tree::{Node, Table, Value};
+
+named! {
+    /// A composition of learner, policy and hardware; it decides where the design sits unless `[design]` does.
+    pub enum Method {
+        /// The design is in the policy's graph.
+        Hwasp = "hwasp",
+        /// The design is in the action.
+        Minimal = "minimal",
+        /// The design stays as it begins.
+        Fixed = "fixed",
+    }
+}
+
+/// An experiment with every field resolved.
+///
+/// | key | default | meaning | limits |
+/// |---|---|---|---|
+/// | `name` | required | what plots and folders call it | 1 to 100 characters |
+/// | `description` | "" | what it is | up to 2000 characters |
+/// | `method` | "hwasp" | `hwasp`, `minimal` or `fixed` | |
+/// | `seed` | 0 | root of all random streams | 0 to 2^63 - 1 |
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spec {
+    /// What plots and folders call it.
+    pub name: String,
+    /// What it is.
+    pub description: String,
+    /// How learner, policy and hardware are composed.
+    pub method: Method,
+    /// Root of all random streams.
+    pub seed: u64,
+    /// The problem.
+    pub task: TaskSpec,
+    /// The network that commands the motors.
+    pub controller: ControllerSpec,
+    /// Where the design sits and begins.
+    pub design: DesignSpec,
+    /// Exploration.
+    pub noise: NoiseSpec,
+    /// What improves the policy.
+    pub learner: LearnerSpec,
+    /// Settings of PPO.
+    pub ppo: PpoSpec,
+    /// What estimates values.
+    pub baseline: BaselineSpec,
+    /// How long, in which portions.
+    pub train: TrainSpec,
+}
+
+impl Spec {
+    /// The resolved experiment as a file that gives the same `Spec` again.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+}
+
+/// Checks an experiment for a method, its own if none is named, and resolves every field.
+///
+/// Mistakes in the tables of the other methods are told too.
+pub fn resolve(layers: Layers, method: Option<&str>) -> Result<Spec, SpecErrors> {
+    let layers = match method {
+        Some(method) => layers.with_option(format!("--method {method}"), "method", method),
+        None => layers,
+    };
+    let named = match layers.method() {
+        Some(Node { value: Value::Text(name), .. }) => Method::from_name(name),
+        _ => None,
+    };
+    // A method that is none is a fault of its key; the rest is checked as if it were the default.
+    let method = named.unwrap_or(Method::Hwasp);
+    let (spec, mut errors) = read(&layers, &layers.overridden(method.name()), method);
+    for (name, source) in layers.overlaid() {
+        if let Some(other) = Method::from_name(name).filter(|&other| other != method) {
+            // The command line speaks of the chosen method only.
+            let (_, found) = read(&layers, &layers.merged(name), other);
+            let theirs = found.faults().iter().filter(|fault| fault.source == Some(source));
+            theirs.for_each(|fault| errors.push(fault.clone()));
+        }
+    }
+    for fault in layers.faults() {
+        errors.push(fault);
+    }
+    errors.into_result()?;
+    // Without faults there is a spec: only a missing or unknown problem leaves none.
+    spec.ok_or_else(|| SpecErrors::single("experiment", "it cannot be resolved".into(), None))
+}
+
+/// Reads merged tables.
+fn read(layers: &Layers, table: &Table, method: Method) -> (Option<Spec>, SpecErrors) {
+    let reader = Reader::new(&layers.sources);
+    let spec = read_spec(&reader, table, method);
+    (spec, reader.into_errors())
+}
+
+fn read_spec<'r>(reader: &'r Reader<'r>, table: &'r Table, method: Method) -> Option<Spec> {
+    let mut root = Section::root(reader, table);
+    if root.origin("name").is_none() {
+        root.clash("name", "name is missing".into(), "begin the file with a line such as name = \"my-experiment\"");
+    }
+    let name = root.text("name", 100).unwrap_or_default();
+    if name.trim().is_empty() && reader.sound(&["name"]) {
+        root.clash("name", "name is empty".into(), "plots and folders are called by it");
+    }
+    let description = root.text("description", 2000).unwrap_or_default();
+    root.choice("method", Method::ALL);
+    let seed = root.integer("seed", 0, 0..=i64::MAX as u64);
+    if let Some(node) = root.take("methods") {
+        // Tables of a file never come this far.
+        let hint = "tables for a method are written as [methods.minimal.ppo] in a file; \
+                    the command line sets keys of the chosen method: --set ppo.clip_ratio=0.1";
+        reader.fault(Some(&node.origin), "methods", "methods cannot be set here".into(), Some(hint.into()));
+    }
+    let sections = ["task", "controller", "design", "noise", "learner", "ppo", "baseline", "train"]
+        .map(|name| reader.section(&mut root, name));
+    root.finish();
+    let [task, controller, design, noise, learner, ppo, baseline, train] = sections;
+
+    let learner = LearnerSpec::read(learner);
+    let baseline = BaselineSpec::read(baseline);
+    let task = TaskSpec::read(task);
+    let train = TrainSpec::read(train, task.as_ref().map_or(MOST_STEPS, |task| task.horizon));
+    let ppo = PpoSpec::read(ppo, &train);
+    // The rest cannot be judged without a task.
+    let task = task?;
+    let controller = ControllerSpec::read(controller, task.observations());
+    let design = DesignSpec::read(design, method, &task);
+    let noise = NoiseSpec::read(noise, &task, &design);
+    Some(Spec { name, description, method, seed, task, controller, design, noise, learner, ppo, baseline, train })
+}

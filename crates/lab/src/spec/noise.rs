@@ -1,0 +1,127 @@
+//! `[noise]`: standard deviations of the Gaussian that explores.
+
+use hwasp_core::{Dimension, parse_quantity};
+use serde::{Serialize, Serializer};
+
+use super::design::{DesignSpec, Place};
+use super::section::Section;
+use super::task::TaskSpec;
+use super::tree::Value;
+use super::values::with_unit;
+
+/// A quantity whose dimension depends on the task.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffortSpec {
+    /// In SI.
+    pub value: f64,
+    /// Force, length or speed.
+    pub dimension: Dimension,
+}
+
+/// `[noise]`: initial standard deviations, trained or annealed from there.
+///
+/// | key | default | meaning | limits |
+/// |---|---|---|---|
+/// | `command` | 0.3 | of the motor command, as a fraction of its range | 1e-6 to 10 |
+/// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
+/// | `design` | 0.3 | of a parameter in the action, as a fraction of its range | 1e-6 to 10 |
+/// | `command_final`, `effort_final`, `design_final` | "none" | annealed geometrically to this | as above |
+/// | `anneal` | [0.25, 0.75] | begin and end of annealing, fractions of training | 0 to 1, in order |
+/// | `train` | true | whether the standard deviations are trained | |
+/// | `learning_rate_scale` | 1.0 | times the policy's learning rate | 0 to 1000 |
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NoiseSpec {
+    /// Of the motor command, as a fraction of its range.
+    pub command: f64,
+    /// What that is annealed to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command_final: Option<f64>,
+    /// Of the effort; none where no parameter sits in the graph, and the effort is no action.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort: Option<EffortSpec>,
+    /// What that is annealed to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort_final: Option<EffortSpec>,
+    /// Of a parameter in the action, as a fraction of its range.
+    pub design: f64,
+    /// What that is annealed to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub design_final: Option<f64>,
+    /// Begin and end of annealing, as fractions of training.
+    pub anneal: [f64; 2],
+    /// Whether the standard deviations are trained.
+    pub train: bool,
+    /// Times the policy's learning rate.
+    pub learning_rate_scale: f64,
+}
+
+impl NoiseSpec {
+    /// Reads the table for a task and the places of its parameters.
+    pub(super) fn read(mut s: Section<'_>, task: &TaskSpec, design: &DesignSpec) -> Self {
+        let fraction = 1e-6..=10.0;
+        let command = s.number("command", 0.3, fraction.clone());
+        let command_final = s.optional_number("command_final", fraction.clone());
+        let in_graph = (0..task.group().count).any(|i| design.place_of(i) == Place::Graph);
+        let (effort, effort_final) =
+            if in_graph { read_effort(&mut s, task) } else { (skim(&mut s, "effort"), skim(&mut s, "effort_final")) };
+        let spec = Self {
+            command,
+            command_final,
+            effort,
+            effort_final,
+            design: s.number("design", 0.3, fraction.clone()),
+            design_final: s.optional_number("design_final", fraction),
+            anneal: read_anneal(&mut s),
+            train: s.flag("train", true),
+            learning_rate_scale: s.number("learning_rate_scale", 1.0, 0.0..=1000.0),
+        };
+        s.finish();
+        spec
+    }
+}
+
+fn read_effort(s: &mut Section<'_>, task: &TaskSpec) -> (Option<EffortSpec>, Option<EffortSpec>) {
+    let dimension = task.effort_dimension();
+    let default = if dimension == Dimension::Force { 3.0 } else { 0.1 };
+    let range = 1e-6..=1e4;
+    let value = s.quantity("effort", dimension, default, &range);
+    let end = s.optional_quantity("effort_final", dimension, 0.01 * default, &range);
+    (Some(EffortSpec { value, dimension }), end.map(|value| EffortSpec { value, dimension }))
+}
+
+/// A key that says nothing here, because the effort is no action: a base table may have it for another method, whose
+/// effort may even have another unit. It still has to be a quantity.
+fn skim(s: &mut Section<'_>, key: &'static str) -> Option<EffortSpec> {
+    let node = s.take(key)?;
+    let any = [Dimension::Force, Dimension::Length, Dimension::Speed];
+    let fits = match &node.value {
+        Value::Text(text) => text == "none" || any.iter().any(|&d| parse_quantity(text, d).is_ok()),
+        _ => false,
+    };
+    if !fits {
+        s.wrong(key, node, "is not a quantity", Some("write it like \"3 N\"".into()));
+    }
+    None
+}
+
+fn read_anneal(s: &mut Section<'_>) -> [f64; 2] {
+    const DEFAULT: [f64; 2] = [0.25, 0.75];
+    let Some(node) = s.take("anneal") else { return DEFAULT };
+    if let Value::List(items) = &node.value
+        && let [Some(begin), Some(end)] = items.iter().map(super::tree::Node::number).collect::<Vec<_>>()[..]
+        && 0.0 <= begin
+        && begin <= end
+        && end <= 1.0
+    {
+        return [begin, end];
+    }
+    let rest = "is not a pair [begin, end] with 0 <= begin <= end <= 1";
+    s.wrong("anneal", node, rest, Some(format!("fractions of training; the default is {DEFAULT:?}")));
+    DEFAULT
+}
+
+impl Serialize for EffortSpec {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&with_unit(self.value, self.dimension))
+    }
+}

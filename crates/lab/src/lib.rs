@@ -1,1 +1,26 @@
-//! placeholder
+//! The laboratory: experiment files, their assembly, training, run folders, evaluation, statistics and plots.
+//!
+//! A program that embeds training needs three calls: [`spec::load`] and [`spec::resolve`] an experiment,
+//! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
+
+mod assemble;
+mod drawing;
+mod evaluate;
+pub mod metrics;
+mod observer;
+pub mod plot;
+mod policy_file;
+mod run_folder;
+pub mod spec;
+pub mod stats;
+mod summary;
+mod train;
+
+pub use assemble::{AssembleError, Assembly, Problems, World};
+pub use drawing::Drawing;
+pub use evaluate::{EvaluateError, Evaluation, MeanInterval, evaluate, evaluate_in};
+pub use observer::{Event, Observer, ObserverError};
+pub use policy_file::{PolicyFileError, read_policy, write_policy};
+pub use run_folder::{Provenance, RunError, RunFolder, SavedRun};
+pub use summary::{DesignGroupSummary, Summary};
+pub use train::{TRAILING, TrainError, Trained, train};

@@ -15,7 +15,9 @@ pub enum StatsError {
     #[error("a statistic needs at least one value, and there is none")]
     Empty,
     /// A value that cannot be averaged.
-    #[error("value {index} is {value}; only finite values can be summarised: leave out the run it came from, or repeat it")]
+    #[error(
+        "value {index} is {value}; only finite values can be summarised: leave out the run it came from, or repeat it"
+    )]
     NotFinite {
         /// Its place, from 0.
         index: usize,

@@ -78,7 +78,8 @@ fn bootstrap_covers_the_true_mean() {
 fn figures_depend_on_the_values_and_the_stream_alone() {
     let mut reversed = TWELVE;
     reversed.reverse();
-    let of = |values: &[f64], seed| bootstrap_interval(values, Sample::interquartile_mean, &mut generator(seed)).unwrap();
+    let of =
+        |values: &[f64], seed| bootstrap_interval(values, Sample::interquartile_mean, &mut generator(seed)).unwrap();
     assert_eq!(of(&TWELVE, 3), of(&TWELVE, 3));
     assert_eq!(of(&TWELVE, 3), of(&reversed, 3));
     assert_ne!(of(&TWELVE, 3), of(&TWELVE, 4));

@@ -11,25 +11,26 @@ pub(super) struct Axis {
 impl Axis {
     /// The step axis: from 0 to the last step drawn, about five ticks.
     pub(super) fn of_steps(last: f64) -> Self {
-        let high = if last > 0.0 { last } else { 1.0 };
-        Self { low: 0.0, high, step: round_step(high, 5.0) }
+        let high = last.max(1.0);
+        // There are no parts of steps.
+        Self { low: 0.0, high, step: round_step(high, 5.0).max(1.0) }
     }
 
-    /// An axis that holds `low` to `high` with a little room, about five ticks.
+    /// An axis that holds `low` to `high` with a little room, four to seven ticks.
     pub(super) fn of_values(low: f64, high: f64) -> Self {
         let size = low.abs().max(high.abs());
         // A constant curve still gets a range in which ticks differ.
-        let least = if size > 0.0 { 0.02 * size } else { 1.0 };
+        let least = if size > 1e-90 { 0.02 * size } else { 1.0 };
         let extra = (0.06 * (high - low)).max((least - (high - low)) / 2.0);
         let (mut padded_low, mut padded_high) = (low - extra, high + extra);
         // Room below zero would suggest that a stiffness may be negative.
-        if low >= 0.0 {
+        if low >= 0.0 && high > 0.0 {
             padded_low = padded_low.max(0.0);
         }
-        if high <= 0.0 {
+        if high <= 0.0 && low < 0.0 {
             padded_high = padded_high.min(0.0);
         }
-        Self { low: padded_low, high: padded_high, step: round_step(padded_high - padded_low, 5.0) }
+        Self { low: padded_low, high: padded_high, step: round_step(padded_high - padded_low, 7.0) }
     }
 
     /// Where a value lies between the ends, 0 to 1.
@@ -110,9 +111,10 @@ mod tests {
     #[test]
     fn step_axes_read_well() {
         assert_eq!(Axis::of_steps(4e6).engineering_labels(), ["0", "1M", "2M", "3M", "4M"]);
-        assert_eq!(Axis::of_steps(1.2e6).engineering_labels(), ["0.00M", "0.25M", "0.50M", "0.75M", "1.00M"].map(|l| {
-            if l == "0.00M" { "0" } else { l }
-        }));
+        assert_eq!(
+            Axis::of_steps(1.2e6).engineering_labels(),
+            ["0.00M", "0.25M", "0.50M", "0.75M", "1.00M"].map(|l| { if l == "0.00M" { "0" } else { l } })
+        );
         assert_eq!(Axis::of_steps(500_000.0).engineering_labels(), ["0", "100k", "200k", "300k", "400k", "500k"]);
         assert_eq!(Axis::of_steps(0.0).engineering_labels().first().map(String::as_str), Some("0"));
     }
@@ -120,13 +122,13 @@ mod tests {
     #[test]
     fn value_axes_read_well() {
         assert_eq!(Axis::of_values(-1125.0, -399.0).labels(), ["−1000", "−800", "−600", "−400"]);
-        assert_eq!(Axis::of_values(0.09, 0.38).labels(), ["0.1", "0.2", "0.3"]);
+        assert_eq!(Axis::of_values(0.09, 0.38).labels(), ["0.10", "0.15", "0.20", "0.25", "0.30", "0.35"]);
         assert_eq!(Axis::of_values(-3e6, 1e6).labels(), ["−3e6", "−2e6", "−1e6", "0", "1e6"]);
     }
 
     #[test]
     fn degenerate_ranges_have_ticks() {
-        for (low, high) in [(0.0, 0.0), (19.6, 19.6), (-1e99, 1e99), (1e-80, 1e-80), (1.0, 1.0 + 1e-15)] {
+        for (low, high) in [(0.0, 0.0), (-0.0, 5e-324), (19.6, 19.6), (-1e99, 1e99), (1e-80, 1e-80), (1.0, 1.0 + 1e-15)] {
             let axis = Axis::of_values(low, high);
             assert!(axis.low <= low && axis.high >= high && axis.low < axis.high, "{axis:?}");
             assert!((2..=12).contains(&axis.ticks().len()), "{axis:?} has {:?}", axis.ticks());

@@ -1,12 +1,12 @@
 //! From the rows of runs to what is drawn: bad rows left out, smoothed, runs of one label brought to one grid.
 
-use super::{Band, Curve, PlotError, PlotOptions};
+use super::{Band, Curve, PlotError, PlotOptions, RETURN};
 use crate::stats::{Bootstrap, Interval, Sample, StatsError};
 use hwasp_core::Stream;
 use rand::SeedableRng;
 
 /// Larger magnitudes are taken for a run that has blown up: they would leave nothing else to see.
-const LARGEST: f64 = 1e100;
+pub(super) const LARGEST: f64 = 1e100;
 /// Points of the common grid of several runs: one for every other pixel or so.
 const GRID: usize = 201;
 /// The bootstrap of a picture draws the same resamples at each of its grid points, and every time.
@@ -18,9 +18,9 @@ pub(super) type Point = (f64, f64);
 /// One run in one panel.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
-    /// As logged.
+    /// As logged; empty where nothing is smoothed.
     pub(super) raw: Vec<Point>,
-    /// The trailing mean.
+    /// The trailing mean of a return, a design total as logged.
     pub(super) smooth: Vec<Point>,
 }
 
@@ -80,7 +80,7 @@ impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Skipped { label, series, rows } => {
-                write!(f, "{label}: {rows} rows of {series} are not drawn (not finite, or out of order)")
+                write!(f, "{label}: {series} is drawn without {rows} of its rows (not finite, or out of order)")
             }
             Self::NoRows { label, series } => write!(f, "{label}: no row of {series} can be drawn"),
             Self::Shortened { label, series, shown, longest } => write!(
@@ -119,7 +119,13 @@ pub(super) fn shape(
         if rows > 0 {
             notes.push(Note::Skipped { label, series, rows });
         }
-        lines.push(Line { smooth: trailing_mean(&raw, options.window), raw });
+        // A design moves without noise: a trailing mean would only make it late.
+        let noisy = column == RETURN && options.window > 1;
+        lines.push(if noisy {
+            Line { smooth: trailing_mean(&raw, options.window), raw }
+        } else {
+            Line { smooth: raw, raw: Vec::new() }
+        });
     }
     let label = runs.first().map_or("", |run| &run.label);
     Ok(if present { Some(combine(lines, label, column, options.band, notes)?) } else { None })
@@ -217,7 +223,6 @@ pub(super) fn thin(line: &[Point], columns: usize) -> Vec<Point> {
     }
     kept
 }
-
 
 #[cfg(test)]
 mod tests {

@@ -109,7 +109,8 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
 fn joined(points: impl Iterator<Item = (f64, f64)>) -> String {
     let mut text = String::new();
     for (x, y) in points {
-        push(&mut text, format_args!("{}{},{}", if text.is_empty() { "" } else { " " }, px(x), px(y)));
+        let gap = if text.is_empty() { "" } else { " " };
+        push(&mut text, format_args!("{gap}{},{}", px(x), px(y)));
     }
     text
 }

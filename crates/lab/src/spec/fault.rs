@@ -95,8 +95,13 @@ impl SpecErrors {
         if self.faults.len() < MOST_KEPT && !self.faults.contains(&fault) {
             self.faults.push(fault);
         } else if self.is_full() {
-            self.dropped += 1;
+            self.count_one();
         }
+    }
+
+    /// Counts a fault that there is no room for.
+    pub(super) fn count_one(&mut self) {
+        self.dropped += 1;
     }
 
     /// Whether further faults are only counted.

@@ -146,11 +146,10 @@ fn read(layers: &Layers, table: &Table, method: Method) -> (Option<Spec>, SpecEr
 
 fn read_spec<'r>(reader: &'r Reader<'r>, table: &'r Table, method: Method) -> Option<Spec> {
     let mut root = Section::root(reader, table);
+    let name = root.text("name", 100).unwrap_or_default();
     if root.origin("name").is_none() {
         root.clash("name", "name is missing".into(), "begin the file with a line such as name = \"my-experiment\"");
-    }
-    let name = root.text("name", 100).unwrap_or_default();
-    if name.trim().is_empty() && reader.sound(&["name"]) {
+    } else if name.trim().is_empty() && reader.sound(&["name"]) {
         root.clash("name", "name is empty".into(), "plots and folders are called by it");
     }
     let description = root.text("description", 2000).unwrap_or_default();

@@ -33,6 +33,9 @@ impl<'r> Reader<'r> {
     /// Notes a fault; without an origin it is about what the file does not say.
     pub(super) fn fault(&self, origin: Option<&Origin>, key: &str, message: String, hint: Option<String>) {
         let mut errors = self.errors.borrow_mut();
+        if errors.is_full() {
+            return errors.count_one();
+        }
         let finding = Finding { key: key.to_owned(), message, hint };
         let missing = Origin::default();
         let at = origin.unwrap_or(&missing);
@@ -67,6 +70,10 @@ impl<'r> Reader<'r> {
     /// All faults, those of unknown keys included.
     pub(super) fn into_errors(self) -> SpecErrors {
         for (path, key, origin) in self.unknown.borrow().iter() {
+            if self.errors.borrow().is_full() {
+                self.errors.borrow_mut().count_one();
+                continue;
+            }
             let known = self.known.borrow();
             let full = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
             let place = if path.is_empty() { "at the top".to_owned() } else { format!("in [{path}]") };
@@ -77,9 +84,7 @@ impl<'r> Reader<'r> {
                 let sections = sections.map(|(s, _)| if s.is_empty() { "the top".into() } else { format!("[{s}]") });
                 sections.collect::<Vec<_>>().join(" or ")
             };
-            let hint = if self.errors.borrow().is_full() {
-                String::new() // it is only counted
-            } else if let Some(near) = nearest(key, here()) {
+            let hint = if let Some(near) = nearest(key, here()) {
                 format!("did you mean `{near}`?")
             } else if let Some(near) = nearest(key, known.iter().map(|(_, other)| *other)) {
                 let what = if near == key { "it belongs to" } else { &format!("did you mean `{near}` of") };

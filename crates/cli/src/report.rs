@@ -1,0 +1,111 @@
+//! What the program says, as text.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+use hwasp_core::Policy;
+use hwasp_lab::spec::Spec;
+use hwasp_lab::{Assembly, Evaluation, MeanInterval, Summary};
+
+/// An error with its causes.
+pub(crate) fn failure(error: &dyn Error) -> String {
+    let mut text = format!("error: {error}");
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let _ = write!(text, "\n  because: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+/// The line before a training.
+pub(crate) fn beginning(spec: &Spec, path: &Path) -> String {
+    format!(
+        "training {} ({}, seed {}) for {} steps into {}",
+        spec.name,
+        spec.method.name(),
+        spec.seed,
+        spec.train.env_steps,
+        path.display()
+    )
+}
+
+/// The result of a training.
+pub(crate) fn training(summary: &Summary, path: &Path) -> String {
+    let mut text = String::new();
+    let stopped = if summary.stopped { " (stopped early)" } else { "" };
+    let _ = writeln!(
+        text,
+        "\n{} · {} · seed {}{stopped}: {} steps in {:.1} s ({:.0} steps/s)\n",
+        summary.experiment, summary.method, summary.seed, summary.env_steps, summary.wall_s, summary.steps_per_s
+    );
+    for (name, group) in &summary.design {
+        let count = group.values.len();
+        let unit = &group.unit;
+        let of = if count == 1 { String::new() } else { format!(" in total over {count}") };
+        let best = group.optimum.map_or(String::new(), |o| format!(" (best known {})", quantity(o, unit)));
+        let _ = writeln!(text, "  {name:<10} {}{of}{best}", quantity(group.total_as_built, unit));
+        if group.as_built != group.values {
+            let trained = quantity(group.total, unit);
+            let _ = writeln!(text, "  {:<10} trained as {trained}; the softened interface stretches by the rest", "");
+        }
+        if count > 1 {
+            let values: Vec<String> = group.as_built.iter().take(10).map(|v| format!("{v:.4}")).collect();
+            let more = if count > 10 { " …" } else { "" };
+            let _ = writeln!(text, "  {:<10} {}{more}", "", values.join("  "));
+        }
+    }
+    let _ = writeln!(text);
+    text.push_str(&evaluation(&summary.evaluation));
+    let _ = writeln!(
+        text,
+        "\n  {}: design.toml, policy.safetensors, curves.svg, metrics.csv, summary.json",
+        path.display()
+    );
+    text
+}
+
+fn quantity(value: f64, unit: &str) -> String {
+    format!("{value:.4} {unit}").trim_end().to_owned()
+}
+
+/// An evaluation.
+pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
+    let line = |name: &str, m: &MeanInterval| {
+        format!("  {name:<20} {:>10.2}   95 % interval [{:.2}, {:.2}]\n", m.mean, m.low, m.high)
+    };
+    let mut text = format!(
+        "  deterministic policy, {} held-out starts (seed {}), hardware as built:\n",
+        evaluation.episodes, evaluation.seed
+    );
+    text.push_str(&line("discounted return", &evaluation.discounted_return));
+    text.push_str(&line("return", &evaluation.undiscounted_return));
+    text
+}
+
+/// A sound experiment.
+pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
+    let policy = &assembly.policy;
+    let iterations = spec.train.env_steps.div_ceil(spec.train.rows() as u64);
+    let design = policy.space().names().len();
+    format!(
+        "{} ({}) is sound\n  problem     {}, {design} design parameters\n  policy      {} parameters, action: {}\n  \
+         training    {} steps: {iterations} iterations of {} episodes of {} steps\n",
+        spec.name,
+        spec.method.name(),
+        spec.task.kind().name(),
+        policy.param_count(),
+        shorten(policy.action_names()),
+        spec.train.env_steps,
+        spec.train.episodes_per_iteration,
+        spec.train.episode_steps,
+    )
+}
+
+/// The first few of many names.
+fn shorten(names: &[String]) -> String {
+    const SHOWN: usize = 4;
+    let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > SHOWN { format!("{shown}, … ({} in all)", names.len()) } else { shown }
+}

@@ -1,0 +1,238 @@
+//! Rollouts: the same bits for any number of threads and any split, episodes that end early, and numbers that are none.
+
+mod common;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use hwasp_core::{
+    Batch, End, EnvSpec, Environment, EpisodeKind, Episodes, Executor, Purpose, Sampler, Serial, Step, Stream, Threads,
+    stream,
+};
+use rand::RngExt;
+
+fn episodes(indices: Range<u64>, kind: EpisodeKind) -> Episodes {
+    Episodes { seed: 7, iteration: 3, indices, progress: 0.3, kind }
+}
+
+/// 40 episodes are two jobs of 32 and 8 on one thread, 20 and 20 on two, 14, 14 and 12 on three, and any other number when
+/// the indices are split beforehand.
+#[test]
+fn threads_and_splits_change_no_bit() {
+    let executors: Vec<Box<dyn Executor>> = vec![
+        Box::new(Serial),
+        Box::new(Threads::new(1).unwrap()),
+        Box::new(Threads::new(2).unwrap()),
+        Box::new(Threads::new(3).unwrap()),
+    ];
+    for placements in common::all_placements() {
+        let policy = Arc::new(common::policy(placements).unwrap());
+        let params = policy.init(1, 1.0);
+        for kind in [EpisodeKind::Training, EpisodeKind::Evaluation, EpisodeKind::NoisyEvaluation] {
+            let sampler = Sampler::new(Arc::clone(&policy), common::make(), None);
+            let collect =
+                |executor: &dyn Executor, indices| sampler.collect(executor, &params, &episodes(indices, kind));
+            let reference = collect(&Serial, 0..40).unwrap();
+            assert!(reference.rows() < 40 * common::HORIZON, "no episode ended early");
+            for executor in &executors {
+                let together = collect(&**executor, 0..40).unwrap();
+                assert_eq!(common::bits(&together), common::bits(&reference), "{} workers", executor.workers());
+                let parts = [0..1, 1..8, 8..40].map(|indices| collect(&**executor, indices).unwrap());
+                for (e, (part, i)) in parts.iter().flat_map(|p| (0..p.episodes.len()).map(move |i| (p, i))).enumerate()
+                {
+                    assert_eq!(episode_bits(part, i), episode_bits(&reference, e), "episode {e}");
+                }
+            }
+        }
+    }
+}
+
+/// Everything about episode `e`, wherever it lies in its batch.
+fn episode_bits(batch: &Batch, e: usize) -> Vec<u64> {
+    let episode = &batch.episodes[e];
+    let rows = episode.rows.clone();
+    let narrow = [&batch.obs, &batch.state, &batch.action, &batch.log_prob].map(|column| {
+        let width = column.len() / batch.rows();
+        column[rows.start * width..rows.end * width].iter().map(|x| u64::from(x.to_bits())).collect::<Vec<_>>()
+    });
+    let mut bits = narrow.concat();
+    bits.extend(batch.reward[rows].iter().map(|x| x.to_bits()));
+    bits.extend(episode.last_obs.iter().map(|x| u64::from(x.to_bits())));
+    bits.push(episode.end as u64);
+    bits
+}
+
+#[test]
+fn every_part_of_a_name_gives_other_episodes() {
+    let policy = Arc::new(common::policy(common::all_placements().remove(0)).unwrap());
+    let params = policy.init(1, 1.0);
+    let sampler = Sampler::new(policy, common::make(), None);
+    let bits = |episodes| common::bits(&sampler.collect(&Serial, &params, &episodes).unwrap());
+    let base = episodes(0..2, EpisodeKind::Training);
+    let reference = bits(base.clone());
+    assert_ne!(reference, bits(Episodes { seed: 8, ..base.clone() }));
+    assert_ne!(reference, bits(Episodes { iteration: 4, ..base.clone() }));
+    assert_ne!(reference, bits(Episodes { indices: 1..3, ..base.clone() }));
+    assert_ne!(reference, bits(Episodes { kind: EpisodeKind::NoisyEvaluation, ..base }));
+}
+
+#[test]
+fn no_episodes_are_an_empty_batch() {
+    let policy = Arc::new(common::policy(common::all_placements().remove(0)).unwrap());
+    let params = policy.init(1, 1.0);
+    let sampler = Sampler::new(policy, common::make(), None);
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+        let batch = sampler.collect(executor, &params, &episodes(5..5, EpisodeKind::Training)).unwrap();
+        assert_eq!(batch, Batch::default());
+    }
+}
+
+/// What a [`Clock`] does after its start.
+#[derive(Clone, Copy)]
+enum Habit {
+    /// Ends after 1 + 12·start steps, rounded down, unless the horizon comes first.
+    EndsEarly,
+    /// Gives no number as reward in step 4 where it started above a half.
+    LosesReward,
+}
+
+/// Shows where it started, in [0, 1), and how many steps it took; the reward is their sum.
+struct Clock {
+    spec: EnvSpec,
+    habit: Habit,
+    start: f64,
+    taken: usize,
+}
+
+const HORIZON: usize = 10;
+const BAD_STEP: usize = 4;
+
+impl Clock {
+    fn made(habit: Habit) -> Arc<dyn hwasp_core::MakeEnvironment> {
+        Arc::new(move |horizon: Option<usize>| -> Box<dyn Environment> {
+            let mut spec = common::env_spec();
+            spec.horizon = horizon.unwrap_or(HORIZON);
+            Box::new(Self { spec, habit, start: 0.0, taken: 0 })
+        })
+    }
+
+    fn length(start: f64) -> usize {
+        1 + (12.0 * start) as usize
+    }
+}
+
+impl Environment for Clock {
+    fn spec(&self) -> &EnvSpec {
+        &self.spec
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        (self.start, self.taken) = (rng.random(), 0);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        out.copy_from_slice(&[self.start, self.taken as f64, 0.0]);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        out.copy_from_slice(&[-(self.taken as f64), self.start]);
+    }
+
+    fn step(&mut self, _effort: &[f64], _command: &[f64]) -> Step {
+        let bad = self.taken == BAD_STEP && self.start > 0.5;
+        self.taken += 1;
+        let (reward, end) = match self.habit {
+            Habit::LosesReward => (if bad { f64::NAN } else { 1.0 }, None),
+            Habit::EndsEarly => {
+                let over = self.taken == Self::length(self.start);
+                (self.start + self.taken as f64, over.then_some(End::Terminated))
+            }
+        };
+        Step { reward, end: end.or((self.taken >= self.spec.horizon).then_some(End::Truncated)) }
+    }
+}
+
+/// The policy of the winch, which sees the clock as it is.
+fn sampler(habit: Habit) -> (Sampler, Vec<f32>) {
+    let mut spec = common::policy_spec(common::all_placements().remove(3));
+    spec.observation_center = vec![0.0; 3];
+    spec.observation_scale = vec![1.0; 3];
+    let policy = hwasp_core::HardwarePolicy::new(spec, &common::env_spec()).unwrap();
+    let params = policy.init(1, 1.0);
+    (Sampler::new(Arc::new(policy), Clock::made(habit), None), params)
+}
+
+/// Where the clock of this episode starts.
+fn start(seed: u64, iteration: u64, episode: u64) -> f64 {
+    stream(seed, Purpose::TrainingReset, iteration, episode).random()
+}
+
+#[test]
+fn episodes_that_end_early_leave_no_gaps() {
+    let (sampler, params) = sampler(Habit::EndsEarly);
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+        let batch = sampler.collect(executor, &params, &episodes(0..40, EpisodeKind::Training)).unwrap();
+        let mut row = 0;
+        let mut ends = [0, 0];
+        for (e, episode) in batch.episodes.iter().enumerate() {
+            let start = start(7, 3, e as u64);
+            let length = Clock::length(start).min(HORIZON);
+            assert_eq!(episode.rows, row..row + length);
+            let end = if Clock::length(start) <= HORIZON { End::Terminated } else { End::Truncated };
+            assert_eq!(episode.end, end);
+            ends[end as usize] += 1;
+            for t in 0..length {
+                assert_eq!(batch.obs[row * 3..][..3], [start as f32, t as f32, 0.0]);
+                assert_eq!(batch.state[row * 2..][..2], [-(t as f32), start as f32]);
+                assert_eq!(batch.reward[row], start + (t + 1) as f64);
+                row += 1;
+            }
+            assert_eq!(episode.last_obs, [start as f32, length as f32, 0.0]);
+        }
+        assert!(ends[0] > 5 && ends[1] > 5, "both ends should be seen: {ends:?}");
+        assert_eq!(batch.rows(), row);
+        assert_eq!(batch.log_prob.len(), row);
+        assert_eq!([batch.obs.len(), batch.state.len()], [3 * row, 2 * row]);
+        assert_eq!(batch.action.len(), row * sampler.policy().action_names().len());
+    }
+}
+
+/// The horizon of the sampler replaces the task's own.
+#[test]
+fn a_shorter_horizon_truncates() {
+    let policy = Arc::new(common::policy(common::all_placements().remove(0)).unwrap());
+    let params = policy.init(1, 1.0);
+    let sampler = Sampler::new(policy, common::make(), Some(3));
+    let batch = sampler.collect(&Serial, &params, &episodes(0..10, EpisodeKind::Training)).unwrap();
+    assert!(batch.episodes.iter().any(|e| e.rows.len() == 3 && e.end == End::Truncated));
+    assert!(batch.episodes.iter().all(|e| e.rows.len() <= 3));
+}
+
+#[test]
+fn discounted_returns_by_hand() {
+    let (sampler, params) = sampler(Habit::EndsEarly);
+    let batch = sampler.collect(&Serial, &params, &episodes(0..6, EpisodeKind::Training)).unwrap();
+    for (e, total) in batch.returns(0.5).into_iter().enumerate() {
+        // Σ 0.5^t·(start + t + 1)
+        let start = start(7, 3, e as u64);
+        let wanted: f64 =
+            (0..Clock::length(start).min(HORIZON)).map(|t| 0.5_f64.powi(t as i32) * (start + t as f64 + 1.0)).sum();
+        assert!((total - wanted).abs() < 1e-12, "{total} against {wanted}");
+    }
+}
+
+#[test]
+fn a_reward_that_is_no_number_is_named() {
+    let (sampler, params) = sampler(Habit::LosesReward);
+    let bad = (100..140).find(|&e| start(7, 3, e) > 0.5).unwrap();
+    assert!(bad > 100, "the first episode should be sound");
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+        let training = episodes(100..140, EpisodeKind::Training);
+        let error = sampler.collect(executor, &params, &training).unwrap_err();
+        assert_eq!(error.to_string(), format!("episode {bad} of iteration 3 (seed 7) gave reward = NaN at step 4"));
+        // The environments are good for the next batch.
+        let sound = (100..140).find(|&e| start(7, 3, e) <= 0.5).unwrap();
+        let batch = sampler.collect(executor, &params, &episodes(sound..sound + 1, EpisodeKind::Training)).unwrap();
+        assert_eq!(batch.reward, [1.0; HORIZON]);
+    }
+}

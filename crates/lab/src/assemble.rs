@@ -1,0 +1,251 @@
+//! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
+
+use std::sync::Arc;
+
+use hwasp_algos::{BaselineConfig, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
+use hwasp_core::{
+    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose, stream,
+};
+use hwasp_diff::Activation;
+use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};
+use hwasp_tasks::reach::{Reach, ReachError, ReachSettings};
+use thiserror::Error;
+
+use crate::spec::{
+    ActivationKind, Algorithm, BaselineKind, DesignSpec, InitialSpec, InterfaceKind, MassSpringSpec, Place, Problem,
+    RewardKind, Spec,
+};
+
+/// Why a checked experiment cannot be put together.
+#[derive(Debug, Error)]
+pub enum AssembleError {
+    /// The mass-spring problem's settings.
+    #[error(transparent)]
+    MassSpring(#[from] MassSpringError),
+    /// The reach problem's settings.
+    #[error(transparent)]
+    Reach(#[from] ReachError),
+    /// The placement of the design.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+}
+
+/// A mechanism in a world.
+#[derive(Clone)]
+pub struct World {
+    /// The mechanism's law.
+    pub law: Law,
+    /// Makes environments for it.
+    pub make: Arc<dyn MakeEnvironment>,
+}
+
+/// A problem: where one trains, where the result has to work, and what is known of its best design.
+#[derive(Clone)]
+pub struct Problems {
+    /// Where one trains.
+    pub training: World,
+    /// Where the result has to work: the mechanism as built, without aids to training.
+    pub deployment: World,
+    /// The total of each design group that is best as built, where it is known, SI.
+    pub optimum: Vec<Option<f64>>,
+}
+
+/// An experiment, ready to run.
+#[derive(Clone)]
+pub struct Assembly {
+    /// The problem.
+    pub problem: Problems,
+    /// Controller and hardware composed.
+    pub policy: Arc<HardwarePolicy>,
+    /// Settings of the learner.
+    pub learner: PpoSettings,
+    spec: Spec,
+}
+
+impl Assembly {
+    /// Puts an experiment together.
+    pub fn new(spec: &Spec) -> Result<Self, AssembleError> {
+        let problem = problem(spec)?;
+        let policy = HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
+        Ok(Self { problem, policy: Arc::new(policy), learner: learner(spec), spec: spec.clone() })
+    }
+
+    /// The experiment it was made of.
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// Fresh parameters.
+    pub fn init(&self) -> Vec<f32> {
+        self.policy.init(self.spec.seed, self.spec.controller.output_gain)
+    }
+
+    /// A learner that starts from `params`.
+    pub fn learner(&self, params: Vec<f32>) -> Ppo<HardwarePolicy> {
+        let Algorithm::Ppo = self.spec.learner.algorithm;
+        Ppo::new(&self.learner, Arc::clone(&self.policy), params, self.spec.seed)
+    }
+
+    /// The trained controller on the built hardware: every design parameter fixed to `built`, in the world it is for.
+    pub fn deployed(&self, built: &[f64]) -> Result<HardwarePolicy, AssembleError> {
+        self.fixed_in(&self.problem.deployment, built)
+    }
+
+    /// The trained controller on hardware fixed to `design`, in any world of this problem.
+    pub fn fixed_in(&self, world: &World, design: &[f64]) -> Result<HardwarePolicy, AssembleError> {
+        let mut spec = self.policy.spec().clone();
+        spec.law = world.law.clone();
+        spec.placements = design.iter().map(|&value| Placement::Fixed(value)).collect();
+        spec.noise.train = false;
+        Ok(HardwarePolicy::new(spec, world.make.make(None).spec())?)
+    }
+}
+
+fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
+    let initial = initial(&spec.design, spec);
+    match &spec.task.problem {
+        Problem::Stiffness(p) => {
+            let settings = MassSpringSettings {
+                max_total_stiffness: p.stiffness_total_max,
+                bar_length: p.bar,
+                ..mass_spring(&p.base, spec.task.horizon, initial)
+            };
+            let deployment = MassSpring::stiffness(MassSpringSettings { effort_limit: None, ..settings.clone() })?;
+            mass_spring_problem(&MassSpring::stiffness(settings)?, &deployment)
+        }
+        Problem::BarLength(p) => {
+            let settings = MassSpringSettings {
+                max_total_length: p.length_total_max,
+                spring_stiffness: p.spring,
+                interface_stiffness: p.interface_stiffness,
+                interface_damping: p.interface_damping,
+                ..mass_spring(&p.base, spec.task.horizon, initial)
+            };
+            let interface = match p.interface {
+                InterfaceKind::Soft => Interface::Soft,
+                InterfaceKind::Rigid => Interface::Rigid,
+            };
+            // The bar that is built is rigid and nothing clips its forces.
+            let deployment = MassSpringSettings { effort_limit: None, ..settings.clone() };
+            let deployment = MassSpring::bar(deployment, Interface::Rigid)?;
+            mass_spring_problem(&MassSpring::bar(settings, interface)?, &deployment)
+        }
+        Problem::Reach(p) => {
+            let settings =
+                ReachSettings { goal: p.goal, horizon: spec.task.horizon, initial, ..ReachSettings::default() };
+            let reach = Reach::new(settings)?;
+            let world = World { law: reach.law(), make: Arc::new(reach.clone()) };
+            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![Some(reach.optimum())] })
+        }
+    }
+}
+
+fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Result<Problems, AssembleError> {
+    let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
+    Ok(Problems {
+        training: world(training),
+        deployment: world(deployment),
+        optimum: vec![Some(deployment.optimum())],
+    })
+}
+
+fn mass_spring(base: &MassSpringSpec, horizon: usize, initial: Initial) -> MassSpringSettings {
+    let paper = MassSpringSettings::default();
+    // The experiment names the force; the motor's constants stay and its current gives it.
+    let max_current = base.motor_limit * paper.shaft_radius / paper.torque_constant;
+    let settings = MassSpringSettings {
+        count: base.segments,
+        upper_mass: base.mass_1,
+        lower_mass: base.mass_2,
+        goal: base.goal,
+        max_current,
+        effort_limit: base.effort_clip,
+        horizon,
+        initial,
+        ..paper
+    };
+    match base.reward {
+        RewardKind::Soft => settings,
+        RewardKind::Hard => settings.with_hard_reward(),
+    }
+}
+
+fn initial(design: &DesignSpec, spec: &Spec) -> Initial {
+    let group = spec.task.group();
+    match design.initial {
+        InitialSpec::Logit => Initial::Logit { half_width: design.logit_half_width },
+        InitialSpec::Middle => Initial::Value(0.5 * (group.lo + group.hi)),
+        InitialSpec::Value { value, .. } => Initial::Value(value),
+    }
+}
+
+fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
+    // A fixed parameter keeps the value that a free one would have begun with.
+    let space = law.design();
+    let first = space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0)));
+    let placements = first.iter().enumerate().map(|(i, &value)| match spec.design.place_of(i) {
+        Place::Graph => Placement::Graph,
+        Place::Action => Placement::Action,
+        Place::Fixed => Placement::Fixed(value),
+    });
+    let noise = &spec.noise;
+    let [from, to] = noise.anneal;
+    let anneal = |last: Option<f64>, first: f64| last.map(|last| Anneal { ratio: last / first, from, to });
+    let effort = noise.effort.map_or(1.0, |effort| effort.value);
+    PolicySpec {
+        hidden: spec.controller.hidden.clone(),
+        activation: match spec.controller.activation {
+            ActivationKind::Tanh => Activation::Tanh,
+            ActivationKind::Relu => Activation::Relu,
+        },
+        squash: spec.controller.squash,
+        observation_center: spec.controller.observation_center.clone(),
+        observation_scale: spec.controller.observation_scale.clone(),
+        law: law.clone(),
+        placements: placements.collect(),
+        noise: Noise {
+            command: noise.command,
+            effort,
+            design: noise.design,
+            command_anneal: anneal(noise.command_final, noise.command),
+            effort_anneal: anneal(noise.effort_final.map(|effort| effort.value), effort),
+            design_anneal: anneal(noise.design_final, noise.design),
+            train: noise.train,
+        },
+    }
+}
+
+fn learner(spec: &Spec) -> PpoSettings {
+    let (ppo, baseline) = (&spec.ppo, &spec.baseline);
+    let positive = |x: f64| (x > 0.0).then_some(x);
+    PpoSettings {
+        ppo: PpoConfig {
+            discount: ppo.discount,
+            gae_lambda: ppo.gae_lambda,
+            clip_ratio: ppo.clip_ratio,
+            epochs: ppo.epochs,
+            minibatch_rows: ppo.minibatch_rows,
+            learning_rate: ppo.learning_rate,
+            learning_rate_final: ppo.learning_rate_final,
+            design_lr_scale: spec.design.learning_rate_scale,
+            log_std_lr_scale: spec.noise.learning_rate_scale,
+            adam_epsilon: ppo.adam_epsilon,
+            entropy_coef: ppo.entropy_coef,
+            max_grad_norm: positive(ppo.max_grad_norm),
+            target_kl: positive(ppo.target_kl),
+            normalize_advantages: ppo.normalize_advantages,
+            bootstrap_truncated: ppo.bootstrap_truncated,
+        },
+        baseline: match baseline.kind {
+            BaselineKind::Linear => BaselineConfig::Linear { ridge: baseline.ridge },
+            BaselineKind::Mlp => BaselineConfig::Mlp(MlpBaselineConfig {
+                hidden: baseline.hidden.clone(),
+                learning_rate: baseline.learning_rate,
+                learning_rate_final: ppo.learning_rate_final,
+                epochs: baseline.epochs,
+                minibatch_rows: ppo.minibatch_rows,
+                max_grad_norm: positive(ppo.max_grad_norm),
+            }),
+        },
+    }
+}

@@ -1,0 +1,99 @@
+//! Evaluation: the deterministic policy on held-out starts, on the hardware as built.
+
+use std::sync::Arc;
+
+use hwasp_core::{EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
+use rand::SeedableRng;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::assemble::{AssembleError, Assembly, World};
+use crate::stats::{Interval, Sample, StatsError, bootstrap_interval};
+
+/// Why there is no evaluation.
+#[derive(Debug, Error)]
+pub enum EvaluateError {
+    /// The deployed policy cannot be put together.
+    #[error(transparent)]
+    Assemble(#[from] AssembleError),
+    /// An episode failed.
+    #[error(transparent)]
+    Rollout(#[from] RolloutError),
+    /// No figure can be computed from the returns.
+    #[error(transparent)]
+    Stats(#[from] StatsError),
+}
+
+/// A mean over episodes with its 95 % bootstrap interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeanInterval {
+    /// The mean.
+    pub mean: f64,
+    /// The lower end of the interval.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+/// What a design and its controller are worth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Episodes run.
+    pub episodes: u64,
+    /// The root seed of their starts.
+    pub seed: u64,
+    /// Discounted return.
+    pub discounted_return: MeanInterval,
+    /// Undiscounted return.
+    #[serde(rename = "return")]
+    pub undiscounted_return: MeanInterval,
+    /// The median of the discounted returns.
+    pub median_discounted_return: f64,
+    /// The worst discounted return.
+    pub worst_discounted_return: f64,
+}
+
+/// Evaluates the controller in `params` on the design in them, as built, where it has to work.
+pub fn evaluate(
+    assembly: &Assembly,
+    params: &[f32],
+    (episodes, seed): (u64, u64),
+    executor: &dyn Executor,
+) -> Result<Evaluation, EvaluateError> {
+    let design = assembly.policy.design(params);
+    let built = assembly.problem.training.law.as_built(&design);
+    evaluate_in(assembly, &assembly.problem.deployment, &built, params, (episodes, seed), executor)
+}
+
+/// Evaluates the controller in `params` on a given design in a given world of the same problem.
+pub fn evaluate_in(
+    assembly: &Assembly,
+    world: &World,
+    design: &[f64],
+    params: &[f32],
+    (episodes, seed): (u64, u64),
+    executor: &dyn Executor,
+) -> Result<Evaluation, EvaluateError> {
+    let policy = assembly.fixed_in(world, design)?;
+    let sampler = Sampler::new(Arc::new(policy), Arc::clone(&world.make), None);
+    let controller = assembly.policy.controller_params(params);
+    let kind = EpisodeKind::Evaluation;
+    let episodes_asked = Episodes { seed, iteration: 0, indices: 0..episodes, progress: 1.0, kind };
+    let batch = sampler.collect(executor, controller, &episodes_asked)?;
+    let discounted = batch.returns(assembly.spec().ppo.discount);
+    let mut stream = Stream::seed_from_u64(seed);
+    let sample = Sample::new(&discounted)?;
+    Ok(Evaluation {
+        episodes,
+        seed,
+        discounted_return: mean_interval(&discounted, &mut stream)?,
+        undiscounted_return: mean_interval(&batch.returns(1.0), &mut stream)?,
+        median_discounted_return: sample.quantile(0.5),
+        worst_discounted_return: sample.min(),
+    })
+}
+
+fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {
+    let Interval { low, high, .. } = bootstrap_interval(values, Sample::mean, stream)?;
+    Ok(MeanInterval { mean: Sample::new(values)?.mean(), low, high })
+}

@@ -1,0 +1,152 @@
+//! The page: title, legend, panels side by side, and a line that says what the strokes mean.
+
+use super::panel::{AREA, GREY, INK, MARGINS, OPTIMUM, Panel, colour, stroke};
+use super::svg::{Anchor, Svg, text_width};
+use super::{Band, PlotOptions};
+
+/// A label of the legend and how many runs share it.
+#[derive(Debug)]
+pub(super) struct Entry<'a> {
+    pub(super) label: &'a str,
+    pub(super) runs: usize,
+}
+
+const TITLE_SIZE: f64 = 15.0;
+const LEGEND_SIZE: f64 = 11.5;
+const LEGEND_ROW: f64 = 19.0;
+const SWATCH: f64 = 24.0;
+
+/// Draws everything.
+pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], options: &PlotOptions) -> String {
+    let (left, top, right, bottom) = MARGINS;
+    let cell = (left + AREA.0 + right, top + AREA.1 + bottom);
+    let columns = match panels.len() {
+        n @ 0..=3 => n.max(1),
+        4 => 2,
+        _ => 3,
+    };
+    let width = cell.0 * columns as f64;
+    let reach = width - left - 12.0;
+    let title = cut(&options.title, TITLE_SIZE, reach);
+    let legend = Legend::lay_out(panels, entries, reach);
+    let title_end = if title.is_empty() { 8.0 } else { 32.0 };
+    let panels_start = title_end + legend.height() + 6.0;
+    let rows = panels.len().div_ceil(columns);
+    let panels_end = panels_start + cell.1 * rows as f64;
+    let height = panels_end + 20.0;
+
+    let mut svg = Svg::new(width, height, if title.is_empty() { "learning curves" } else { &title });
+    if !title.is_empty() {
+        svg.text((left, 24.0), TITLE_SIZE, Anchor::Start, INK, &title);
+    }
+    legend.draw(&mut svg, (left, title_end));
+    for (place, panel) in panels.iter().enumerate() {
+        let corner = ((place % columns) as f64 * cell.0 + left, (place / columns) as f64 * cell.1 + panels_start + top);
+        panel.draw(&mut svg, corner);
+    }
+    svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &explanation(panels, options));
+    svg.finish()
+}
+
+/// What lines and bands mean, for whoever meets the picture without its text.
+fn explanation(panels: &[Panel], options: &PlotOptions) -> String {
+    let window = options.window;
+    let single = match window {
+        1 => String::new(),
+        _ => format!("return: each iteration (pale) and the mean of the last {window} (full)"),
+    };
+    let band = match options.band {
+        Band::MinMax => "from the smallest to the largest",
+        Band::Bootstrap => "of its 95 % bootstrap interval",
+    };
+    let smoothed = match window {
+        1 => String::new(),
+        _ => format!("; a run's return is the mean of its last {window} iterations"),
+    };
+    let summary = format!("interquartile mean of the runs and a band {band}{smoothed}");
+    match (panels.iter().any(Panel::has_single), panels.iter().any(Panel::has_summary)) {
+        (false, false) => String::new(),
+        (true, false) => single,
+        (false, true) => summary,
+        (true, true) if window == 1 => format!("several runs: {summary}"),
+        (true, true) => format!("several runs: {summary}. One run: {single}"),
+    }
+}
+
+/// What stands beside a text of the legend.
+enum Swatch {
+    /// The label at this place, with a band or without.
+    Label { place: usize, band: bool },
+    /// The dashes of an optimum.
+    Optimum,
+}
+
+/// Texts with their swatches and positions, wrapped into rows.
+struct Legend {
+    items: Vec<(Swatch, String, (f64, f64))>,
+}
+
+impl Legend {
+    fn lay_out(panels: &[Panel], entries: &[Entry<'_>], reach: f64) -> Self {
+        let mut texts: Vec<(Swatch, String)> = Vec::new();
+        for (place, entry) in entries.iter().enumerate() {
+            let (band, runs) = (entry.runs > 1, entry.runs);
+            let suffix = if band { format!(" ({runs} runs)") } else { String::new() };
+            let room = (reach - SWATCH - 8.0 - text_width(&suffix, LEGEND_SIZE)).min(420.0);
+            let text = format!("{}{suffix}", cut(entry.label, LEGEND_SIZE, room));
+            texts.push((Swatch::Label { place, band }, text));
+        }
+        if panels.iter().any(|panel| panel.text.optimum.is_some()) {
+            texts.push((Swatch::Optimum, "optimum".to_owned()));
+        }
+        let (mut x, mut y) = (0.0, 0.0);
+        let mut items = Vec::with_capacity(texts.len());
+        for (swatch, text) in texts {
+            let size = SWATCH + 7.0 + text_width(&text, LEGEND_SIZE);
+            if x > 0.0 && x + size > reach {
+                (x, y) = (0.0, y + LEGEND_ROW);
+            }
+            items.push((swatch, text, (x, y)));
+            x += size + 20.0;
+        }
+        Self { items }
+    }
+
+    fn height(&self) -> f64 {
+        self.items.last().map_or(0.0, |item| item.2.1 + LEGEND_ROW)
+    }
+
+    fn draw(&self, svg: &mut Svg, corner: (f64, f64)) {
+        for (swatch, text, (x, y)) in &self.items {
+            let (x, y) = (corner.0 + x, corner.1 + y + LEGEND_ROW / 2.0);
+            let end = (x + SWATCH, y);
+            match swatch {
+                Swatch::Label { place, band } => {
+                    if *band {
+                        let corners = [(x, y - 5.0), (end.0, y - 5.0), (end.0, y + 5.0), (x, y + 5.0)];
+                        let style = format!("fill=\"{}\" fill-opacity=\"0.18\"", colour(*place));
+                        svg.polygon(corners.into_iter(), &style);
+                    }
+                    svg.line((x, y), end, &stroke(*place));
+                }
+                Swatch::Optimum => svg.line((x, y), end, OPTIMUM),
+            }
+            svg.text((end.0 + 7.0, y + 4.0), LEGEND_SIZE, Anchor::Start, INK, text);
+        }
+    }
+}
+
+/// The text, or as much of its beginning as there is room for.
+fn cut(text: &str, size: f64, room: f64) -> String {
+    if text_width(text, size) <= room {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    for c in text.chars() {
+        short.push(c);
+        if text_width(&short, size) > room - size {
+            break;
+        }
+    }
+    format!("{}…", short.trim_end())
+}

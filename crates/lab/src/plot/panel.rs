@@ -1,0 +1,183 @@
+//! One panel: axes, grid, and the lines of every label.
+
+use super::PanelText;
+use super::axis::{Axis, value_label};
+use super::series::{Line, Point, Shape, thin};
+use super::svg::{Anchor, Svg};
+
+/// The plotting area, in pixels.
+pub(super) const AREA: (f64, f64) = (360.0, 236.0);
+/// Room around it: left, top, right, bottom.
+pub(super) const MARGINS: (f64, f64, f64, f64) = (74.0, 8.0, 50.0, 46.0);
+
+pub(super) const INK: &str = "#262626";
+pub(super) const GREY: &str = "#666666";
+/// Dashes of a known optimum.
+pub(super) const OPTIMUM: &str = "stroke=\"#262626\" stroke-width=\"1.1\" stroke-dasharray=\"5 3\"";
+const GRID_LINE: &str = "stroke=\"#e6e6e6\" stroke-width=\"0.8\"";
+const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
+
+/// Okabe and Ito's palette without its yellow, told apart by every common kind of colour vision.
+const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
+/// A second and third round of colours is dashed.
+const DASHES: [&str; 3] = ["", " stroke-dasharray=\"7 2.5\"", " stroke-dasharray=\"2 2\""];
+
+/// The colour of the label at this place in the legend.
+pub(super) fn colour(place: usize) -> &'static str {
+    COLOURS[place % COLOURS.len()]
+}
+
+/// The stroke of the label at this place in the legend.
+pub(super) fn stroke(place: usize) -> String {
+    let dash = DASHES[place / COLOURS.len() % DASHES.len()];
+    format!("stroke=\"{}\" stroke-width=\"1.8\"{dash}", colour(place))
+}
+
+/// What one panel shows: a shape per label, none for a label that lacks the column.
+#[derive(Debug)]
+pub(super) struct Panel {
+    pub(super) text: PanelText,
+    shapes: Vec<Option<Shape>>,
+}
+
+impl Panel {
+    pub(super) fn new(text: PanelText, shapes: Vec<Option<Shape>>) -> Self {
+        Self { text, shapes }
+    }
+
+    /// Whether a label is drawn as a mean with a band.
+    pub(super) fn has_summary(&self) -> bool {
+        self.shapes.iter().flatten().any(|shape| matches!(shape, Shape::Summary { .. }))
+    }
+
+    /// Whether a label is drawn as logged with its trailing mean.
+    pub(super) fn has_single(&self) -> bool {
+        self.shapes.iter().flatten().any(|shape| matches!(shape, Shape::Single(_)))
+    }
+
+    /// Every point that the axes must hold.
+    fn points(&self) -> Vec<Point> {
+        let of_line = |line: &Line| [line.raw.clone(), line.smooth.clone()].concat();
+        let of_shape = |shape: &Shape| match shape {
+            Shape::Nothing => Vec::new(),
+            Shape::Single(line) => of_line(line),
+            Shape::Summary { centre, band } => {
+                let sides = band.iter().flat_map(|&(step, low, high)| [(step, low), (step, high)]);
+                centre.iter().copied().chain(sides).collect()
+            }
+            Shape::Separate(lines) => lines.iter().flat_map(|line| line.smooth.clone()).collect(),
+        };
+        self.shapes.iter().flatten().flat_map(of_shape).collect()
+    }
+
+    /// Draws the panel with the top left corner of its plotting area at `corner`.
+    pub(super) fn draw(&self, svg: &mut Svg, corner: (f64, f64)) {
+        let points = self.points();
+        let last = points.iter().fold(0f64, |last, point| last.max(point.0));
+        let values = points.iter().map(|point| point.1);
+        let (low, high) =
+            values.chain(self.text.optimum).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let values = if low <= high { Axis::of_values(low, high) } else { Axis::of_values(0.0, 1.0) };
+        let frame = Frame { corner, steps: Axis::of_steps(last), values };
+        frame.draw_axes(svg, &self.text);
+        if points.is_empty() {
+            let middle = (corner.0 + AREA.0 / 2.0, corner.1 + AREA.1 / 4.0);
+            svg.text(middle, 12.0, Anchor::Middle, GREY, "no rows to draw");
+        }
+        // The optimum lies under the curves that run into it, bands under lines.
+        if let Some(value) = self.text.optimum {
+            let y = frame.at((0.0, value)).1;
+            svg.line((corner.0, y), (corner.0 + AREA.0, y), OPTIMUM);
+            svg.text((corner.0 + AREA.0 + 5.0, y + 3.6), 10.0, Anchor::Start, INK, &value_label(value));
+        }
+        let shapes = || self.shapes.iter().enumerate().filter_map(|(place, shape)| Some((place, shape.as_ref()?)));
+        for (place, shape) in shapes() {
+            frame.draw_background(svg, place, shape);
+        }
+        for (place, shape) in shapes() {
+            frame.draw_lines(svg, place, shape);
+        }
+    }
+}
+
+/// A plotting area with its axes.
+struct Frame {
+    corner: (f64, f64),
+    steps: Axis,
+    values: Axis,
+}
+
+impl Frame {
+    /// Where a point lies on the page.
+    fn at(&self, point: Point) -> (f64, f64) {
+        let (x, y) = (self.steps.share(point.0), self.values.share(point.1));
+        (self.corner.0 + x * AREA.0, self.corner.1 + (1.0 - y) * AREA.1)
+    }
+
+    fn draw_axes(&self, svg: &mut Svg, text: &PanelText) {
+        let (left, top) = self.corner;
+        let (right, bottom) = (left + AREA.0, top + AREA.1);
+        for (tick, label) in self.steps.ticks().into_iter().zip(self.steps.engineering_labels()) {
+            let x = self.at((tick, 0.0)).0;
+            svg.line((x, top), (x, bottom), GRID_LINE);
+            svg.line((x, bottom), (x, bottom + 4.0), FRAME);
+            svg.text((x, bottom + 16.0), 11.0, Anchor::Middle, INK, &label);
+        }
+        for (tick, label) in self.values.ticks().into_iter().zip(self.values.labels()) {
+            let y = self.at((0.0, tick)).1;
+            svg.line((left, y), (right, y), GRID_LINE);
+            svg.line((left - 4.0, y), (left, y), FRAME);
+            svg.text((left - 7.0, y + 4.0), 11.0, Anchor::End, INK, &label);
+        }
+        svg.line((left, top), (left, bottom), FRAME);
+        svg.line((left, bottom), (right, bottom), FRAME);
+        let middle = (left + AREA.0 / 2.0, bottom + 35.0);
+        svg.text(middle, 12.0, Anchor::Middle, INK, "real environment steps");
+        let unit = if text.unit.is_empty() { String::new() } else { format!(" ({})", text.unit) };
+        svg.upward_text((left - 56.0, top + AREA.1 / 2.0), 12.0, INK, &format!("{}{unit}", text.label));
+    }
+
+    /// What lies under every line: bands, and single runs as logged.
+    fn draw_background(&self, svg: &mut Svg, place: usize, shape: &Shape) {
+        let colour = colour(place);
+        match shape {
+            Shape::Summary { band, .. } => {
+                let upper = band.iter().map(|&(step, _, high)| (step, high));
+                let lower = band.iter().rev().map(|&(step, low, _)| (step, low));
+                let style = format!("fill=\"{colour}\" fill-opacity=\"0.18\"");
+                svg.polygon(upper.chain(lower).map(|point| self.at(point)), &style);
+            }
+            Shape::Single(line) => {
+                let style = format!("stroke=\"{colour}\" stroke-width=\"0.8\" stroke-opacity=\"0.35\"");
+                self.draw_line(svg, &line.raw, &style, place);
+            }
+            Shape::Separate(_) | Shape::Nothing => {}
+        }
+    }
+
+    fn draw_lines(&self, svg: &mut Svg, place: usize, shape: &Shape) {
+        let style = stroke(place);
+        match shape {
+            Shape::Nothing => {}
+            Shape::Single(line) => self.draw_line(svg, &line.smooth, &style, place),
+            Shape::Summary { centre, .. } => self.draw_line(svg, centre, &style, place),
+            Shape::Separate(lines) => {
+                for line in lines {
+                    self.draw_line(svg, &line.smooth, &style, place);
+                }
+            }
+        }
+    }
+
+    /// A line, or a dot where there is but one point.
+    fn draw_line(&self, svg: &mut Svg, line: &[Point], style: &str, place: usize) {
+        match line {
+            [] => {}
+            [point] => svg.dot(self.at(*point), 3.0, &format!("fill=\"{}\"", colour(place))),
+            _ => {
+                let points: Vec<_> = thin(line, AREA.0 as usize).into_iter().map(|point| self.at(point)).collect();
+                svg.polyline(&points, style);
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Trained parameters as safetensors: a format that cannot run code, read by every framework.
+
+use std::collections::HashMap;
+
+use hwasp_core::{HardwarePolicy, Policy};
+use safetensors::tensor::{Dtype, TensorView};
+use safetensors::{SafeTensors, serialize};
+use thiserror::Error;
+
+/// The largest file that is read, in bytes: the largest controller there can be, and some.
+pub const LARGEST_POLICY: u64 = 2 << 30;
+
+/// Why a policy file is of no use.
+#[derive(Debug, Error)]
+pub enum PolicyFileError {
+    /// It is not safetensors.
+    #[error("not a policy in the safetensors format: {0}")]
+    Format(#[from] safetensors::SafeTensorError),
+    /// A tensor is missing, or has another shape or type than the experiment's policy.
+    #[error("tensor `{name}` is {found}, and this experiment's policy has {needed}")]
+    Tensor {
+        /// Its name.
+        name: String,
+        /// What the file has.
+        found: String,
+        /// What it should have.
+        needed: String,
+    },
+    /// A parameter is no number.
+    #[error("tensor `{name}` holds {value} at position {at}")]
+    NotFinite {
+        /// Its name.
+        name: String,
+        /// The value.
+        value: f32,
+        /// Where it is.
+        at: usize,
+    },
+}
+
+/// The names and shapes of a policy's tensors, in the order of its parameter vector.
+fn tensors(policy: &HardwarePolicy) -> Vec<(String, Vec<usize>)> {
+    let mut names = Vec::new();
+    for (layer, sizes) in policy.controller().sizes().windows(2).enumerate() {
+        names.push((format!("controller.{layer}.weight"), sizes.to_vec()));
+        names.push((format!("controller.{layer}.bias"), vec![sizes[1]]));
+    }
+    for group in policy.groups().iter().filter(|g| g.name != "controller" && !g.range.is_empty()) {
+        // What is stored of the design is the unbounded stand-in of each free parameter; design.toml has the SI values.
+        let name = if group.name == "design" { "design.logit" } else { group.name };
+        names.push((name.to_owned(), vec![group.range.len()]));
+    }
+    names
+}
+
+/// The parameters as bytes of a safetensors file. Weights are `[in, out]`.
+pub fn write_policy(policy: &HardwarePolicy, params: &[f32]) -> Result<Vec<u8>, PolicyFileError> {
+    let mut at = 0;
+    let mut pieces = Vec::new();
+    for (name, shape) in tensors(policy) {
+        let count: usize = shape.iter().product();
+        let bytes: Vec<u8> = params[at..at + count].iter().flat_map(|p| p.to_le_bytes()).collect();
+        pieces.push((name, shape, bytes));
+        at += count;
+    }
+    let views = pieces
+        .iter()
+        .map(|(name, shape, bytes)| Ok((name.clone(), TensorView::new(Dtype::F32, shape.clone(), bytes)?)))
+        .collect::<Result<Vec<_>, safetensors::SafeTensorError>>()?;
+    let about = HashMap::from([("format".to_owned(), "hwasp-policy-1".to_owned())]);
+    Ok(serialize(views, Some(about))?)
+}
+
+/// Reads the parameters of `policy` back. Bytes are taken for hostile: names, shapes, types and values are checked.
+pub fn read_policy(policy: &HardwarePolicy, bytes: &[u8]) -> Result<Vec<f32>, PolicyFileError> {
+    let file = SafeTensors::deserialize(bytes)?;
+    let mut params = Vec::with_capacity(policy.param_count());
+    for (name, shape) in tensors(policy) {
+        let needed = format!("F32 {shape:?}");
+        let tensor = file.tensor(&name).map_err(|_| PolicyFileError::Tensor {
+            name: name.clone(),
+            found: "missing".into(),
+            needed: needed.clone(),
+        })?;
+        if tensor.dtype() != Dtype::F32 || tensor.shape() != shape {
+            let found = format!("{:?} {:?}", tensor.dtype(), tensor.shape());
+            return Err(PolicyFileError::Tensor { name, found, needed });
+        }
+        for (at, bytes) in tensor.data().chunks_exact(4).enumerate() {
+            let value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+            if !value.is_finite() {
+                return Err(PolicyFileError::NotFinite { name, value, at });
+            }
+            params.push(value);
+        }
+    }
+    Ok(params)
+}

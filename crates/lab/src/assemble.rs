@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use hwasp_algos::{BaselineConfig, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
 use hwasp_core::{
-    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose, stream,
+    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose,
+    stream,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};
@@ -66,7 +67,8 @@ impl Assembly {
     /// Puts an experiment together.
     pub fn new(spec: &Spec) -> Result<Self, AssembleError> {
         let problem = problem(spec)?;
-        let policy = HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
+        let policy =
+            HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
         Ok(Self { problem, policy: Arc::new(policy), learner: learner(spec), spec: spec.clone() })
     }
 
@@ -142,11 +144,7 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
 
 fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Result<Problems, AssembleError> {
     let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
-    Ok(Problems {
-        training: world(training),
-        deployment: world(deployment),
-        optimum: vec![Some(deployment.optimum())],
-    })
+    Ok(Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] })
 }
 
 fn mass_spring(base: &MassSpringSpec, horizon: usize, initial: Initial) -> MassSpringSettings {

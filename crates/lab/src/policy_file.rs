@@ -8,7 +8,7 @@ use safetensors::{SafeTensors, serialize};
 use thiserror::Error;
 
 /// The largest file that is read, in bytes: the largest controller there can be, and some.
-pub const LARGEST_POLICY: u64 = 2 << 30;
+pub(crate) const LARGEST_POLICY: u64 = 2 << 30;
 
 /// Why a policy file is of no use.
 #[derive(Debug, Error)]

@@ -291,11 +291,8 @@ impl SavedRun {
 
     /// Axis texts, units and known optima for its picture.
     pub fn plot_options(&self, title: String) -> PlotOptions {
-        let mut panels = vec![PanelText {
-            column: RETURN.into(),
-            label: "discounted return".into(),
-            ..PanelText::default()
-        }];
+        let mut panels =
+            vec![PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }];
         let groups = self.assembly.policy.space().groups();
         for ((column, group), optimum) in
             self.assembly.total_names().into_iter().zip(groups).zip(&self.assembly.problem.optimum)

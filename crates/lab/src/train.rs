@@ -63,11 +63,8 @@ pub fn train(
 ) -> Result<Trained, TrainError> {
     let spec = assembly.spec();
     let mut learner = assembly.learner(assembly.init());
-    let sampler = Sampler::new(
-        assembly.policy.clone(),
-        assembly.problem.training.make.clone(),
-        Some(spec.train.episode_steps),
-    );
+    let sampler =
+        Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
     let totals = assembly.total_names();
     observer.on(Event::Started { env_steps: spec.train.env_steps, totals: &totals })?;
     let began = Instant::now();

@@ -14,7 +14,7 @@ fn groups_efforts_and_observations_are_those_of_the_task() {
             assert_eq!((group.dimension, group.count), (real.dimension, real.count), "{name}");
             assert_eq!((group.lo, group.hi), (real.lo, real.hi), "{name}");
 
-            let robot = world.make.make(None).spec();
+            let robot = world.make.make(None).spec().clone();
             assert_eq!(robot.horizon, spec.task.horizon, "{name}");
             assert_eq!(robot.observation.len(), spec.task.observations(), "{name}");
             assert!(robot.effort.iter().all(|port| port.dimension == spec.task.effort_dimension()), "{name} {method}");

@@ -5,11 +5,11 @@ use hwasp_core::{Batch, End};
 /// What [`advantages`] gives, one value per row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advantages {
-    /// Â_t = Σ_l (γλ)^l δ_{t+l} with δ_t = r_t + γ·V(s_{t+1}) - V(s_t).
+    /// `Â_t = Σ_l (γλ)^l δ_{t+l}` with `δ_t = r_t + γ·V(s_{t+1}) - V(s_t)`.
     pub advantage: Vec<f32>,
-    /// Â_t + V(s_t), the λ-return that a value function may learn.
+    /// `Â_t + V(s_t)`, the λ-return that a value function may learn.
     pub lambda_return: Vec<f32>,
-    /// Σ_l γ^l r_{t+l} to the end of the episode, and nothing beyond.
+    /// `Σ_l γ^l r_{t+l}` to the end of the episode, and nothing beyond.
     pub discounted_return: Vec<f32>,
 }
 

@@ -238,9 +238,10 @@ impl<P: Policy> Learner for Ppo<P> {
             let sound = self.params.iter().all(|p| p.is_finite());
             sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
         });
-        match &result {
-            Ok(_) => self.baseline.fit(batch, &targets, progress, iteration),
-            Err(_) => (self.params, self.adam) = before,
+        if result.is_ok() {
+            self.baseline.fit(batch, &targets, progress, iteration);
+        } else {
+            (self.params, self.adam) = before;
         }
         result
     }
@@ -346,3 +347,6 @@ impl Surrogate<'_> {
         (f64::from(kl.iter().sum::<f32>()), f64::from(clipped.iter().sum::<f32>()))
     }
 }
+
+#[cfg(test)]
+mod tests;

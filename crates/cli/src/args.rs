@@ -61,7 +61,7 @@ pub(crate) struct ExperimentArgs {
     /// How the design is placed [default: what the experiment says]
     #[arg(long, value_enum)]
     method: Option<MethodArg>,
-    /// Set one value of the experiment, such as ppo.clip_ratio=0.1; may be repeated
+    /// Set one value of the experiment, such as `ppo.clip_ratio=0.1`; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
 }

@@ -26,37 +26,42 @@ fn log_probabilities_are_densities() {
         for (p, change) in params[policy.log_std_params().unwrap()].iter_mut().zip(common::irregular(8, 1)) {
             *p += 0.3 * change;
         }
-        let sampler = Sampler::new(Arc::clone(&policy), common::make(), None);
-        let progress = 0.4;
-        let batch = sampler.collect(&Serial, &params, &episodes(0..4, progress, EpisodeKind::Training)).unwrap();
-        let rows = batch.rows();
-        let (state, action) =
-            (transposed(&batch.state, policy.state_dim()), transposed(&batch.action, policy.action_dim()));
-        let mut tape = policy.tape(rows);
-        policy.bind(&params, &mut tape);
-        let block = Rows { count: rows, obs: &batch.obs, state: &state, action: &action, stride: rows };
-        let mean = policy.forward(&block, &mut tape);
-        let mut log_std = vec![0.0; policy.action_dim()];
-        policy.log_std(&params, progress, &mut log_std);
-        let mut outside = 0;
-        for r in 0..rows {
-            let mut density = 0.0;
-            for j in 0..policy.action_dim() {
-                let (a, m, s) = (action[j * rows + r], mean[j * rows + r], f64::from(log_std[j]));
-                let z = (f64::from(a) - f64::from(m)) / s.exp();
-                density -= 0.5 * z * z + s + 0.5 * gaussian::LOG_TWO_PI;
-                let design = policy.space().names().iter().position(|n| *n == policy.action_names()[j]);
-                outside += usize::from(design.is_some_and(|i| {
-                    let (lo, hi) = policy.space().bounds(i);
-                    !(lo..=hi).contains(&f64::from(a))
-                }));
-            }
-            let recorded = f64::from(batch.log_prob[r]);
-            assert!((recorded - density).abs() < 1e-3, "{recorded} against {density}, {:?}", policy.spec().placements);
-        }
+        // Early, where designs are sampled beyond their limits, and late, where the commands' noise has changed too.
+        let outside: usize = [0.1, 0.4].into_iter().map(|progress| check_log_prob(&policy, &params, progress)).sum();
         let samples = policy.spec().placements.contains(&Placement::Action);
         assert_eq!(outside > 0, samples, "the limits of sampled designs were not met");
     }
+}
+
+/// Returns how many design parameters were sampled outside of their limits.
+fn check_log_prob(policy: &Arc<HardwarePolicy>, params: &[f32], progress: f64) -> usize {
+    let sampler = Sampler::new(Arc::clone(policy), common::make(), None);
+    let batch = sampler.collect(&Serial, params, &episodes(0..4, progress, EpisodeKind::Training)).unwrap();
+    let rows = batch.rows();
+    let state = transposed(&batch.state, policy.state_dim());
+    let action = transposed(&batch.action, policy.action_dim());
+    let mut tape = policy.tape(rows);
+    policy.bind(params, &mut tape);
+    let block = Rows { count: rows, obs: &batch.obs, state: &state, action: &action, stride: rows };
+    let mean = policy.forward(&block, &mut tape);
+    let log_std = log_std(policy, params, progress);
+    let names = policy.space().names();
+    let mut outside = 0;
+    for r in 0..rows {
+        let mut density = 0.0;
+        for (j, name) in policy.action_names().iter().enumerate() {
+            let (a, m, s) = (f64::from(action[j * rows + r]), f64::from(mean[j * rows + r]), f64::from(log_std[j]));
+            let z = (a - m) / s.exp();
+            density -= 0.5 * z * z + s + 0.5 * gaussian::LOG_TWO_PI;
+            if let Some(i) = names.iter().position(|n| n == name) {
+                let (lo, hi) = policy.space().bounds(i);
+                outside += usize::from(!(lo..=hi).contains(&a));
+            }
+        }
+        let recorded = f64::from(batch.log_prob[r]);
+        assert!((recorded - density).abs() < 1e-3, "{recorded} against {density}, {:?}", policy.spec().placements);
+    }
+    outside
 }
 
 /// Without noise the action is the mean, whatever the standard deviation.

@@ -159,9 +159,15 @@ fn the_program_passes_gradcheck() {
         let design = policy.groups().iter().find(|g| g.name == "design").unwrap().range.clone();
         let u: Vec<f64> = params[design].iter().map(|&u| f64::from(u)).collect();
         let rows = 3;
-        // Away from 1: in the interior of the limits of motors and design.
-        let columns: Vec<f64> =
-            common::irregular(program.column_names().len() * rows, 7).iter().map(|&x| 0.9 * f64::from(x)).collect();
+        // In the interior of the limits: those of the motors are ±1 here, and samples are in SI.
+        let names = policy.space().names();
+        let mut columns = Vec::new();
+        for (c, column) in program.column_names().iter().enumerate() {
+            let design = names.iter().position(|name| *column == format!("{name} (sample)"));
+            let (lo, hi) = design.map_or((-1.0, 1.0), |i| policy.space().bounds(i));
+            let part = common::irregular(rows, 7 + c);
+            columns.extend(part.iter().map(|&x| 0.5 * (lo + hi) + 0.45 * (hi - lo) * f64::from(x)));
+        }
         let program = program.clone().holding(&vec![false; program.column_names().len()]);
         if let Err(error) = gradcheck(&program, &u, &columns, &GradCheckSettings::default()) {
             panic!("{:?}: {error}", policy.spec().placements);

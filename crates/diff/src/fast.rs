@@ -31,8 +31,8 @@ fn reduce(x: f32) -> (f32, f32) {
 /// e^r - 1 for |r| ≤ ln 2/2, relative error 1.4e-8: a minimax fit by Lawson's iteration.
 #[inline(always)]
 fn exp_m1_reduced(r: f32) -> f32 {
-    let p = r.mul_add(1.388_250_7e-3, 8.366_595_6e-3);
-    let p = r.mul_add(p, 4.166_720_2e-2);
+    let p = r.mul_add(1.388_250_7e-3, 8.366_596e-3);
+    let p = r.mul_add(p, 4.166_72e-2);
     let p = r.mul_add(p, 1.666_654_3e-1);
     let p = r.mul_add(p, 0.5);
     (r * r).mul_add(p, r)

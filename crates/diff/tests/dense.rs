@@ -63,7 +63,7 @@ fn check(c: &Case) {
     let gradient = gradient(c);
     let h = 1e-6;
     for i in 0..c.params.len() {
-        let mut at = |step: f64| {
+        let at = |step: f64| {
             let mut params = c.params.clone();
             params[i] += step;
             inner(&outputs(c, &params), &c.cotangent)

@@ -113,7 +113,7 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
                 ..mass_spring(&p.base, spec.task.horizon, initial)
             };
             let deployment = MassSpring::stiffness(MassSpringSettings { effort_limit: None, ..settings.clone() })?;
-            mass_spring_problem(&MassSpring::stiffness(settings)?, &deployment)
+            Ok(mass_spring_problem(&MassSpring::stiffness(settings)?, &deployment))
         }
         Problem::BarLength(p) => {
             let settings = MassSpringSettings {
@@ -130,7 +130,7 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
             // The bar that is built is rigid and nothing clips its forces.
             let deployment = MassSpringSettings { effort_limit: None, ..settings.clone() };
             let deployment = MassSpring::bar(deployment, Interface::Rigid)?;
-            mass_spring_problem(&MassSpring::bar(settings, interface)?, &deployment)
+            Ok(mass_spring_problem(&MassSpring::bar(settings, interface)?, &deployment))
         }
         Problem::Reach(p) => {
             let settings =
@@ -142,7 +142,7 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
     }
 }
 
-fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Result<Problems, AssembleError> {
+fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Problems {
     let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
     Ok(Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] })
 }

@@ -1,5 +1,7 @@
 //! `metrics.csv`: every number comes back with its bits, and no file, however hostile, does worse than an error.
 
+#![allow(clippy::unwrap_used)]
+
 use hwasp_lab::metrics::{FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsRow, MetricsTable, MetricsWriter};
 
 fn row(iteration: u64, values: [f64; 7]) -> MetricsRow {

@@ -1,5 +1,7 @@
 //! Pictures: what they say, how many lines they draw, and that no run is too odd to be drawn.
 
+#![allow(clippy::unwrap_used)]
+
 use hwasp_lab::metrics::{MetricsRow, MetricsTable};
 use hwasp_lab::plot::{Band, Curve, Note, PanelText, PlotError, PlotOptions, RETURN, curves, render_png, write_plot};
 use resvg::{tiny_skia::Pixmap, usvg::roxmltree};

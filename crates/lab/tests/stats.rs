@@ -1,5 +1,7 @@
 //! Statistics against figures computed with `SciPy` 1.17, and bootstrap intervals against what they promise.
 
+#![allow(clippy::unwrap_used)]
+
 use hwasp_core::{Purpose, Stream, stream};
 use hwasp_lab::stats::{Bootstrap, Sample, StatsError, bootstrap_interval, interquartile_mean, mean};
 use rand::Rng;
@@ -46,14 +48,15 @@ fn mean_error_and_quantiles_are_scipys() {
 }
 
 /// `scipy.stats.bootstrap(method="percentile")` with 200,000 resamples, for the mean and for `trim_mean(x, 0.25)`. The
-/// tolerance is three standard errors of a 2.5 % percentile of 200,000 resamples on this grid of values.
+/// tolerance is one step of the grid that the interquartile mean of these values lies on (a sixth of a tenth): at 1.5 the
+/// distribution passes 97.5 % within two standard errors of the step below.
 #[test]
 fn bootstrap_is_scipys() {
     let many = Bootstrap { resamples: 200_000, ..Bootstrap::default() };
     let of = |statistic: fn(&Sample) -> f64| many.interval(&sample(&TWELVE), statistic, &mut generator(1)).unwrap();
     let (mean, iqm) = (of(Sample::mean), of(Sample::interquartile_mean));
     for (got, expected) in [(mean.low, 0.0083), (mean.high, 1.4417), (iqm.low, -0.05), (iqm.high, 1.5)] {
-        assert!((got - expected).abs() < 0.012, "{got} is not {expected}");
+        assert!((got - expected).abs() < 0.0168, "{got} is not {expected}");
     }
 }
 

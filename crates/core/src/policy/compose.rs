@@ -74,13 +74,13 @@ impl PolicySpec {
             }
         }
         let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
-        let free = (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
+        let free: Vec<usize> = (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
         let mut composition = Composition { program: self.trace(env, &layout, &free), layout, free, noise: Vec::new() };
         composition.noise = self.component_noise(env, &composition.layout);
         Ok(composition)
     }
 
-    fn trace(&self, env: &EnvSpec, layout: &ActionLayout, free: &Vec<usize>) -> Program {
+    fn trace(&self, env: &EnvSpec, layout: &ActionLayout, free: &[usize]) -> Program {
         let space = self.law.design();
         let names = space.names();
         let uniforms: Vec<String> = free.iter().map(|&i| names[i].clone()).collect();

@@ -12,7 +12,7 @@ use crate::environment::{CommandPort, EnvSpec};
 use crate::placement::{Body, PlacementError};
 use crate::streams::{Purpose, stream};
 
-/// A perceptron composed with a hardware law (paper, section 4): π(a_new | s, a)·π(a | s) as one Gaussian.
+/// A perceptron composed with a hardware law (paper, section 4): `π(a_new | s, a)·π(a | s)` as one Gaussian.
 ///
 /// Parameters: the controller's, then the unbounded stand-ins of the design parameters that are not fixed, then (where
 /// they are trained) the log standard deviations.

@@ -15,10 +15,10 @@ use hwasp_diff::{Activation, Scalar};
 use rand::RngExt;
 
 /// Two gears and two springs.
-pub struct Winch(DesignSpace);
+pub(crate) struct Winch(DesignSpace);
 
 impl Winch {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let group = |name: &str, lo, hi| DesignGroup {
             name: name.into(),
             dimension: Dimension::None,
@@ -52,7 +52,7 @@ impl Hardware for Winch {
 }
 
 /// A point under both efforts.
-pub struct Point {
+pub(crate) struct Point {
     x: f64,
     v: f64,
 }
@@ -60,7 +60,7 @@ pub struct Point {
 impl Plant for Point {
     fn advance(&mut self, effort: &[f64], _command: &[f64]) {
         self.v = 0.9 * self.v + 0.1 * (effort[0].tanh() + 0.5 * effort[1].tanh());
-        self.x += 0.2 * self.v;
+        self.x += 0.5 * self.v;
     }
 
     fn state(&self, out: &mut [f64]) {
@@ -69,9 +69,9 @@ impl Plant for Point {
 }
 
 /// Stay near the middle; the episode ends where the point has left.
-pub struct Stay;
+pub(crate) struct Stay;
 
-pub const HORIZON: usize = 40;
+pub(crate) const HORIZON: usize = 40;
 
 impl Task for Stay {
     type Plant = Point;
@@ -89,8 +89,8 @@ impl Task for Stay {
     }
 
     fn reset(&mut self, plant: &mut Point, rng: &mut Stream) {
-        plant.x = rng.random::<f64>() * 1.6 - 0.8;
-        plant.v = rng.random::<f64>() - 0.5;
+        plant.x = rng.random::<f64>() * 1.8 - 0.9;
+        plant.v = rng.random::<f64>() * 2.0 - 1.0;
     }
 
     fn observe(&self, plant: &Point, out: &mut [f64]) {
@@ -106,20 +106,20 @@ impl Task for Stay {
     }
 }
 
-pub fn robot(horizon: Option<usize>) -> Box<dyn Environment> {
+pub(crate) fn robot(horizon: Option<usize>) -> Box<dyn Environment> {
     Box::new(Robot::new(Point { x: 0.0, v: 0.0 }, Stay, horizon))
 }
 
-pub fn make() -> Arc<dyn MakeEnvironment> {
+pub(crate) fn make() -> Arc<dyn MakeEnvironment> {
     Arc::new(robot)
 }
 
-pub fn env_spec() -> EnvSpec {
+pub(crate) fn env_spec() -> EnvSpec {
     Stay.spec()
 }
 
 /// Noise of another size for each part of the action; the design's leaves its limits now and then.
-pub fn noise() -> Noise {
+pub(crate) fn noise() -> Noise {
     let anneal = |ratio, from, to| Some(Anneal { ratio, from, to });
     Noise {
         command: 0.3,
@@ -132,7 +132,7 @@ pub fn noise() -> Noise {
     }
 }
 
-pub fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
+pub(crate) fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
     PolicySpec {
         hidden: vec![7, 5],
         activation: Activation::Tanh,
@@ -145,12 +145,12 @@ pub fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
     }
 }
 
-pub fn policy(placements: Vec<Placement>) -> Result<HardwarePolicy, PlacementError> {
+pub(crate) fn policy(placements: Vec<Placement>) -> Result<HardwarePolicy, PlacementError> {
     HardwarePolicy::new(policy_spec(placements), &env_spec())
 }
 
 /// All in one place, and every kind of mixture.
-pub fn all_placements() -> Vec<Vec<Placement>> {
+pub(crate) fn all_placements() -> Vec<Vec<Placement>> {
     use Placement::{Action, Fixed, Graph};
     vec![
         vec![Graph; 4],
@@ -163,13 +163,13 @@ pub fn all_placements() -> Vec<Vec<Placement>> {
 }
 
 /// Numbers without pattern in (-1, 1): the golden-ratio sequence.
-pub fn irregular(len: usize, salt: usize) -> Vec<f32> {
+pub(crate) fn irregular(len: usize, salt: usize) -> Vec<f32> {
     let at = |i: usize| (i as f64 + 0.37 * salt as f64) * 0.618_033_988_749_894_9;
     (1..=len).map(|i| (2.0 * at(i).fract() - 1.0) as f32).collect()
 }
 
 /// Everything in a batch, as bits: also the sign of a zero counts.
-pub fn bits(batch: &Batch) -> Vec<u64> {
+pub(crate) fn bits(batch: &Batch) -> Vec<u64> {
     let narrow = [&batch.obs, &batch.state, &batch.action, &batch.log_prob];
     let mut bits: Vec<u64> = narrow.iter().flat_map(|column| column.iter().map(|x| u64::from(x.to_bits()))).collect();
     bits.extend(batch.reward.iter().map(|x| x.to_bits()));

@@ -146,17 +146,13 @@ fn product_tile<F: Float, S: Simd, const M: usize, const N: usize>(
         Onto::Row(row) => {
             let row = &F::vectors::<S>(row)[n..][..N];
             for m in 0..M {
-                for j in 0..N {
-                    sum[m][j] = row[j];
-                }
+                sum[m].copy_from_slice(row);
             }
         }
         Onto::Result => {
             for m in 0..M {
                 let row = &c[m * columns + n..][..N];
-                for j in 0..N {
-                    sum[m][j] = row[j];
-                }
+                sum[m].copy_from_slice(row);
             }
         }
     }
@@ -173,9 +169,7 @@ fn product_tile<F: Float, S: Simd, const M: usize, const N: usize>(
     }
     for m in 0..M {
         let row = &mut c[m * columns + n..][..N];
-        for j in 0..N {
-            row[j] = sum[m][j];
-        }
+        row.copy_from_slice(&sum[m]);
     }
 }
 
@@ -250,9 +244,7 @@ fn transposed_tile<F: Float, S: Simd, const M: usize, const N: usize>(
     let mut sum = [[F::splat(simd, F::ZERO); N]; M];
     for m in 0..M {
         let row = &c[m * columns + n..][..N];
-        for j in 0..N {
-            sum[m][j] = row[j];
-        }
+        sum[m].copy_from_slice(row);
     }
     for r in 0..rows {
         let x = &a[r * lda..][..M];
@@ -266,8 +258,6 @@ fn transposed_tile<F: Float, S: Simd, const M: usize, const N: usize>(
     }
     for m in 0..M {
         let row = &mut c[m * columns + n..][..N];
-        for j in 0..N {
-            row[j] = sum[m][j];
-        }
+        row.copy_from_slice(&sum[m]);
     }
 }

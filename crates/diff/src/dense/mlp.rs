@@ -316,8 +316,7 @@ impl<F: Float> WithSimd for Forward<'_, F> {
     fn with_simd<S: Simd>(self, simd: S) {
         let rows = self.tape.rows;
         let (mut x, mut stride) = (self.input, self.inputs);
-        let mut layers = self.tape.layers.iter_mut();
-        while let Some(t) = layers.next() {
+        for t in &mut self.tape.layers {
             let shape = t.layer;
             let output = &mut t.output[..rows * t.stride];
             if shape.narrow {

@@ -42,7 +42,7 @@ pub(super) fn differentiate<F: Float>(activation: Activation, h: &[F], d: &mut [
     }
 }
 
-/// sum[j] += Σ_r x[r][j] over rows of `sum.len()` numbers, a multiple of eight.
+/// `sum[j] += Σ_r x[r][j]` over rows of `sum.len()` numbers, a multiple of eight.
 #[inline(always)]
 pub(super) fn add_rows<F: Float>(x: &[F], sum: &mut [F]) {
     let width = sum.len();

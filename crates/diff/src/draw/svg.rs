@@ -157,7 +157,7 @@ fn edges(text: &mut String, graph: &Graph, sizes: &[(f64, f64)], layout: &Layout
             bend(&mut path, pen, (end.0 - 7.0, end.1));
             let _ = writeln!(text, "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{weight}\"/>");
             let (x, y) = end;
-            let _ = writeln!(text, "<path d=\"M{x:.1} {y:.1} l-9 -4 l2 4 l-2 4 z\" fill=\"{colour}\"/>",);
+            let _ = writeln!(text, "<path d=\"M{x:.1} {y:.1} l-9 -4 l2 4 l-2 4 z\" fill=\"{colour}\"/>");
             if edge.minus {
                 minus(text, (x - 17.0, y));
             }

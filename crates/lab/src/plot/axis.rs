@@ -94,7 +94,11 @@ fn round_step(span: f64, parts: f64) -> f64 {
 
 /// How many decimals a multiple of this step needs.
 fn decimals_of(step: f64) -> usize {
-    (0..12).find(|&d| (step * 10f64.powi(d) - (step * 10f64.powi(d)).round()).abs() < 1e-6).unwrap_or(12) as usize
+    let whole = |decimals: &i32| {
+        let scaled = step * 10f64.powi(*decimals);
+        scaled > 0.5 && (scaled - scaled.round()).abs() < 1e-6
+    };
+    (0..12).find(whole).unwrap_or(12) as usize
 }
 
 fn short_exponent(value: f64) -> String {
@@ -128,7 +132,8 @@ mod tests {
 
     #[test]
     fn degenerate_ranges_have_ticks() {
-        for (low, high) in [(0.0, 0.0), (-0.0, 5e-324), (19.6, 19.6), (-1e99, 1e99), (1e-80, 1e-80), (1.0, 1.0 + 1e-15)] {
+        for (low, high) in [(0.0, 0.0), (-0.0, 5e-324), (19.6, 19.6), (-1e99, 1e99), (1e-80, 1e-80), (1.0, 1.0 + 1e-15)]
+        {
             let axis = Axis::of_values(low, high);
             assert!(axis.low <= low && axis.high >= high && axis.low < axis.high, "{axis:?}");
             assert!((2..=12).contains(&axis.ticks().len()), "{axis:?} has {:?}", axis.ticks());

@@ -1,0 +1,275 @@
+//! PPO's loss, gradient and metrics against arithmetic by hand.
+
+use hwasp_core::{End, Episode, ParamGroup, Rows};
+
+use super::*;
+
+/// One command whose mean is w·o; the parameters are w and log σ.
+struct Line([ParamGroup; 2]);
+
+impl Line {
+    fn new() -> Arc<Self> {
+        Arc::new(Self([ParamGroup { name: "design", range: 0..1 }, ParamGroup { name: "log_std", range: 1..2 }]))
+    }
+}
+
+struct LineTape {
+    w: f32,
+    mean: Vec<f32>,
+    gradient: f32,
+}
+
+impl Policy for Line {
+    type Tape = LineTape;
+
+    fn param_count(&self) -> usize {
+        2
+    }
+    fn groups(&self) -> &[ParamGroup] {
+        &self.0
+    }
+    fn action_dim(&self) -> usize {
+        1
+    }
+    fn obs_dim(&self) -> usize {
+        1
+    }
+    fn state_dim(&self) -> usize {
+        0
+    }
+    fn log_std_params(&self) -> Option<Range<usize>> {
+        Some(1..2)
+    }
+    fn log_std(&self, params: &[f32], _progress: f64, out: &mut [f32]) {
+        out[0] = params[1];
+    }
+    fn tape(&self, max_rows: usize) -> LineTape {
+        LineTape { w: 0.0, mean: vec![0.0; max_rows], gradient: 0.0 }
+    }
+    fn bind(&self, params: &[f32], tape: &mut LineTape) {
+        (tape.w, tape.gradient) = (params[0], 0.0);
+    }
+    fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut LineTape) -> &'t [f32] {
+        for (mean, o) in tape.mean.iter_mut().zip(rows.obs) {
+            *mean = tape.w * o;
+        }
+        &tape.mean
+    }
+    fn vjp(&self, rows: &Rows<'_>, cotangent: &[f32], tape: &mut LineTape) {
+        tape.gradient += rows.obs.iter().zip(cotangent).map(|(o, c)| o * c).sum::<f32>();
+    }
+    fn gradient(&self, tape: &mut LineTape, gradient: &mut [f32]) {
+        gradient.copy_from_slice(&[tape.gradient, 0.0]);
+    }
+    fn add_cotangents(&self, tape: &mut LineTape, other: &LineTape) {
+        tape.gradient += other.gradient;
+    }
+    fn bind_tangent(&self, _tangent: &[f32], _tape: &mut LineTape) {}
+    fn jvp<'t>(&self, _rows: &Rows<'_>, tape: &'t mut LineTape) -> &'t [f32] {
+        &tape.mean
+    }
+}
+
+/// w = 1 and σ = 2.
+fn params() -> Vec<f32> {
+    vec![1.0, std::f32::consts::LN_2]
+}
+
+const OBS: [f64; 3] = [1.0, 2.0, 3.0];
+/// With means 1, 2 and 3 these are z = 1, -2 and 1/2.
+const ACTION: [f64; 3] = [3.0, -2.0, 4.0];
+
+fn log_prob(i: usize, w: f64, log_std: f64) -> f64 {
+    let z = (ACTION[i] - w * OBS[i]) * (-log_std).exp();
+    -0.5 * z * z - log_std - 0.5 * gaussian::LOG_TWO_PI
+}
+
+/// Three episodes of one step, so that with a baseline of zero the advantage is the reward; the old probabilities are such
+/// that the ratios are those given.
+fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
+    let old = |i: usize| (log_prob(i, 1.0, std::f64::consts::LN_2) - ratio[i].ln()) as f32;
+    Batch {
+        obs: OBS.map(|x| x as f32).to_vec(),
+        state: vec![],
+        action: ACTION.map(|x| x as f32).to_vec(),
+        log_prob: (0..3).map(old).collect(),
+        reward: advantage.to_vec(),
+        episodes: (0..3).map(|i| Episode { rows: i..i + 1, end: End::Terminated, last_obs: vec![0.0] }).collect(),
+    }
+}
+
+fn settings() -> PpoSettings {
+    let ppo = PpoConfig {
+        clip_ratio: 0.2,
+        epochs: 1,
+        minibatch_rows: 0,
+        learning_rate: 0.01,
+        log_std_lr_scale: 0.5,
+        design_lr_scale: 10.0,
+        adam_epsilon: 0.0,
+        entropy_coef: 0.1,
+        max_grad_norm: None,
+        normalize_advantages: false,
+        ..PpoConfig::default()
+    };
+    PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5 } }
+}
+
+/// Gradient of w and log σ, KL and clipped rows of one step over the whole batch, and the cotangents of the means.
+fn differentiate(batch: &Batch) -> ([f32; 2], Totals, [f32; 3]) {
+    let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
+    let advantage: Vec<f32> = batch.reward.iter().map(|&r| r as f32).collect();
+    ppo.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
+    let totals = ppo.step.run(&Line::new(), &params(), &ppo.config, 0.0);
+    let mut cotangent = [0.0; 3];
+    cotangent.copy_from_slice(&ppo.step.cotangent[..3]);
+    ([ppo.step.gradient[0], ppo.step.gradient[1]], totals, cotangent)
+}
+
+/// -mean[min(ρ·A, clip(ρ, 0.8, 1.2)·A)] - 0.1·H, written down independently.
+fn loss(batch: &Batch, w: f64, log_std: f64) -> f64 {
+    let term = |i: usize| {
+        let ratio = (log_prob(i, w, log_std) - f64::from(batch.log_prob[i])).exp();
+        (ratio * batch.reward[i]).min(ratio.clamp(0.8, 1.2) * batch.reward[i])
+    };
+    let entropy = log_std + 0.5 * (1.0 + gaussian::LOG_TWO_PI);
+    -(0..3).map(term).sum::<f64>() / 3.0 - 0.1 * entropy
+}
+
+fn close(found: impl Into<f64>, wanted: f64) {
+    let found = found.into();
+    assert!((found - wanted).abs() < 2e-6, "{found} is not {wanted}");
+}
+
+/// The gradient against central differences of the loss.
+fn check_against_loss(batch: &Batch) {
+    let (gradient, _, _) = differentiate(batch);
+    let (s, h) = (std::f64::consts::LN_2, 1e-5);
+    close(gradient[0], (loss(batch, 1.0 + h, s) - loss(batch, 1.0 - h, s)) / (2.0 * h));
+    close(gradient[1], (loss(batch, 1.0, s + h) - loss(batch, 1.0, s - h)) / (2.0 * h));
+}
+
+/// Ratios 1.5, 0.5 and 1.25 with advantages 2, 1 and -1, clip 0.2:
+///   1: min(3, 1.2·2): clipped, no gradient
+///   2: min(0.5, 0.8): below the clip, but where the surrogate is the smaller one, so it pulls:
+///      d loss/d log p = -1/3·0.5·1 = -1/6
+///   3: min(-1.25, -1.2): above the clip, and pulls as well: -1/3·1.25·(-1) = 5/12
+/// d log p/d mean = z/σ, d log p/d log σ = z² - 1, with z = 1, -2, 1/2 and σ = 2:
+///   cotangents of the means: 0, -1/6·(-1) = 1/6, 5/12·1/4 = 5/48
+///   of log σ: -1/6·3 + 5/12·(-3/4) = -13/16, less 0.1 for the entropy
+///   of w: 1/6·2 + 5/48·3 = 31/48
+/// KL: Σ ρ - 1 - ln ρ = 0.5 - 0.5 + 0.25 - ln(1.5·0.5·1.25) = 1/4 - ln(15/16)
+/// Loss without entropy: -(2.4 + 0.5 - 1.25)/3 = -0.55
+fn first() -> Batch {
+    batch([1.5, 0.5, 1.25], [2.0, 1.0, -1.0])
+}
+
+#[test]
+fn three_samples_by_hand() {
+    let (gradient, totals, cotangent) = differentiate(&first());
+    for (found, wanted) in cotangent.into_iter().zip([0.0, 1.0 / 6.0, 5.0 / 48.0]) {
+        close(found, wanted);
+    }
+    close(gradient[0], 31.0 / 48.0);
+    close(gradient[1], -13.0 / 16.0 - 0.1);
+    close(totals.kl, 0.25 - (15.0_f64 / 16.0).ln());
+    assert_eq!((totals.clipped, totals.rows), (1.0, 3));
+    let entropy = std::f64::consts::LN_2 + 0.5 * (1.0 + gaussian::LOG_TWO_PI);
+    close(loss(&first(), 1.0, std::f64::consts::LN_2) + 0.1 * entropy, -0.55);
+    check_against_loss(&first());
+}
+
+/// Ratios 0.5, 1.1 and 0.9 with advantages -1, -2 and 3: only the first is clipped (max of -0.5 and -0.8 in size), and
+///   d loss/d log p = 0, 1/3·1.1·2 = 11/15, -1/3·0.9·3 = -9/10
+///   cotangents of the means: 0, 11/15·(-1) = -11/15, -9/10·1/4 = -9/40
+///   of log σ: 11/15·3 - 9/10·(-3/4) = 23/8, less 0.1
+///   of w: -11/15·2 - 9/40·3 = -257/120 (-22/15 = -176/120, -27/40 = -81/120)
+#[test]
+fn negative_advantages_are_clipped_below() {
+    let batch = batch([0.5, 1.1, 0.9], [-1.0, -2.0, 3.0]);
+    let (gradient, totals, cotangent) = differentiate(&batch);
+    for (found, wanted) in cotangent.into_iter().zip([0.0, -11.0 / 15.0, -9.0 / 40.0]) {
+        close(found, wanted);
+    }
+    close(gradient[0], -257.0 / 120.0);
+    close(gradient[1], 23.0 / 8.0 - 0.1);
+    assert_eq!(totals.clipped, 1.0);
+    check_against_loss(&batch);
+}
+
+/// The first step of Adam without epsilon is the learning rate against the sign of the gradient: w has ten times 0.01 of
+/// it, log σ half.
+#[test]
+fn one_update_by_hand() {
+    let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
+    let metrics = ppo.update(&first(), 0.0, 0).unwrap();
+    close(ppo.params()[0], 1.0 - 0.1);
+    close(ppo.params()[1], std::f64::consts::LN_2 + 0.005);
+    close(metrics.kl, (0.25 - (15.0_f64 / 16.0).ln()) / 3.0);
+    close(metrics.clip_fraction, 1.0 / 3.0);
+    close(metrics.grad_norm, (31.0_f64 / 48.0).hypot(13.0 / 16.0 + 0.1));
+    close(metrics.entropy, std::f64::consts::LN_2 + 0.005 + 0.5 * (1.0 + gaussian::LOG_TWO_PI));
+    assert_eq!(metrics.epochs, 1);
+}
+
+/// The rate falls linearly to its final fraction: to 0.01·(1 - 0.8·0.5) in the middle.
+#[test]
+fn the_learning_rate_decays() {
+    let mut settings = settings();
+    settings.ppo.learning_rate_final = 0.2;
+    let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+    ppo.update(&first(), 0.5, 0).unwrap();
+    close(ppo.params()[0], 1.0 - 0.06);
+}
+
+/// The second epoch ends the update where the first has moved the policy too far, and only there.
+#[test]
+fn epochs_end_at_the_kl_limit() {
+    let epochs = |target_kl| {
+        let mut settings = settings();
+        (settings.ppo.epochs, settings.ppo.target_kl) = (5, target_kl);
+        let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+        ppo.update(&first(), 0.0, 0).unwrap().epochs
+    };
+    // In the first epoch the estimate is 0.1048, and 1.5 times the limit is what counts.
+    assert_eq!(epochs(Some(0.0698)), 1);
+    assert!(epochs(Some(0.0701)) > 1);
+    assert_eq!(epochs(None), 5);
+}
+
+/// A minibatch weighs each of its rows by its own size, and all rows of a batch are seen once per epoch.
+#[test]
+fn minibatches_cover_the_batch() {
+    let mut settings = settings();
+    (settings.ppo.minibatch_rows, settings.ppo.learning_rate) = (2, 0.0);
+    let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+    let metrics = ppo.update(&first(), 0.0, 0).unwrap();
+    close(metrics.kl, (0.25 - (15.0_f64 / 16.0).ln()) / 3.0);
+    close(metrics.clip_fraction, 1.0 / 3.0);
+    assert_eq!(ppo.params(), params());
+}
+
+/// After an error nothing has changed: a further update is what it would have been.
+#[test]
+fn numbers_that_are_none_change_nothing() {
+    let mut twin = Ppo::new(&settings(), Line::new(), params(), 0);
+    twin.update(&first(), 0.0, 0).unwrap();
+    let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
+    ppo.update(&first(), 0.0, 0).unwrap();
+    let (mut reward, mut old, mut action) = (first(), first(), first());
+    reward.reward[1] = f64::NAN;
+    old.log_prob[1] = f32::NAN;
+    action.action[1] = f32::INFINITY;
+    for (batch, what) in [(reward, "an advantage"), (old, "the policy gradient"), (action, "the policy gradient")] {
+        let before = ppo.params().to_vec();
+        let error = ppo.update(&batch, 0.0, 7).unwrap_err();
+        assert_eq!(error, LearnError::NotFinite { what, iteration: 7 });
+        assert_eq!(
+            error.to_string(),
+            format!("{what} is not finite in iteration 7; the parameters before it were kept")
+        );
+        assert_eq!(ppo.params(), before);
+    }
+    assert_eq!(ppo.update(&first(), 0.0, 1).unwrap(), twin.update(&first(), 0.0, 1).unwrap());
+    assert_eq!(ppo.params(), twin.params());
+}

@@ -120,7 +120,7 @@ fn iteration(c: &mut Criterion) {
     group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(30);
     group.bench_function("rollout", |b| b.iter(|| batch(&problem, &policy, 20, 200)));
     group.bench_function("update", |b| b.iter(|| ppo.update(&full, 0.0, 0).expect("finite")));
-    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), 2, 1);
+    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), 2, 4, 1);
     let targets: Vec<f32> = full.obs.iter().step_by(2).copied().collect();
     group.bench_function("fit of the value network", |b| b.iter(|| value.fit(&full, &targets, 0.0, 0)));
 }

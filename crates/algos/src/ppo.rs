@@ -141,7 +141,7 @@ impl<P: Policy> Ppo<P> {
             gradient: vec![0.0; params.len()],
         };
         let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
-        let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), seed);
+        let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
         Self { config, policy, params, adam, baseline, seed, step }
     }
 

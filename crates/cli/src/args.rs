@@ -1,16 +1,35 @@
 //! The command line.
 
 use std::num::NonZeroUsize;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+const EXAMPLES: &str = "\
+Examples:
+  hwasp list                                  what can be trained
+  hwasp train mass-spring                     train a design and its controller, into runs/
+  hwasp eval runs/mass-spring-hwasp-seed0     evaluate the result on held-out starts
+  hwasp plot runs/* --out curves.png          compare runs
+
+Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong.";
+
+/// The greatest seed: what TOML can write.
+const LAST_SEED: u64 = i64::MAX as u64;
+/// The longest training, steps; `train.env_steps` of an experiment has the same limit.
+const MOST_STEPS: u64 = 1_000_000_000_000;
+/// The most episodes of an evaluation; `train.evaluation_episodes` has the same limit.
+const MOST_EPISODES: u64 = 1_000_000;
+/// The most threads: far more than help.
+const MOST_THREADS: u64 = 1024;
+
 /// Design a robot's body and its controller together.
 ///
 /// The law of a mechanism (springs, bars, tendons) is a differentiable part of the policy, and policy gradients train its
-/// physical parameters with the controller (Chen, He and Ciocarlie, "Hardware as Policy", `CoRL` 2020).
+/// physical parameters with the controller (Chen, He and Ciocarlie, "Hardware as Policy", CoRL 2020).
 #[derive(Debug, Parser)]
-#[command(name = "hwasp", version, arg_required_else_help = true, max_term_width = 100)]
+#[command(name = "hwasp", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -35,7 +54,7 @@ pub(crate) enum Command {
 /// How the design is placed.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum MethodArg {
-    /// The law in the policy's graph, as in the paper's `HWasP`
+    /// The law in the policy's graph, as in the paper's HWasP
     Hwasp,
     /// The design in the action, as in the paper's HWasP-Minimal
     Minimal,
@@ -80,14 +99,14 @@ impl ExperimentArgs {
 pub(crate) struct TrainArgs {
     #[command(flatten)]
     pub(crate) experiment: ExperimentArgs,
-    /// Root of all random numbers of the run
-    #[arg(long)]
+    /// Root of all random numbers of the run [default: what the experiment says]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
     pub(crate) seed: Option<u64>,
-    /// Real simulator steps to train for
-    #[arg(long, value_name = "STEPS")]
+    /// Real simulator steps to train for, such as 4e6 [default: what the experiment says]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
     pub(crate) env_steps: Option<u64>,
     /// Threads for episodes; they do not change the result
-    #[arg(long, default_value = "1")]
+    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: NonZeroUsize,
     /// The run folder [default: a new one under runs/]
     #[arg(long, value_name = "FOLDER")]
@@ -99,32 +118,32 @@ pub(crate) struct TrainArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct EvalArgs {
-    /// A run folder
+    /// A run folder, as `hwasp train` writes one
     pub(crate) run: PathBuf,
     /// Episodes [default: what the experiment says]
-    #[arg(long)]
-    pub(crate) episodes: Option<std::num::NonZeroU64>,
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(1..=MOST_EPISODES))]
+    pub(crate) episodes: Option<u64>,
     /// Root seed of their starts [default: what the experiment says]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
     pub(crate) seed: Option<u64>,
     /// Threads for episodes; they do not change the result
-    #[arg(long, default_value = "1")]
+    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: NonZeroUsize,
-    /// Print JSON
+    /// Print JSON, for scripts
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlotArgs {
-    /// Run folders
+    /// Run folders, as `hwasp train` writes them
     #[arg(required = true)]
     pub(crate) runs: Vec<PathBuf>,
     /// The picture, .svg or .png
     #[arg(long, value_name = "FILE", default_value = "curves.svg")]
     pub(crate) out: PathBuf,
-    /// A line above it
-    #[arg(long, default_value = "")]
+    /// A line above it [default: none]
+    #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,
 }
 
@@ -132,7 +151,25 @@ pub(crate) struct PlotArgs {
 pub(crate) struct GraphArgs {
     #[command(flatten)]
     pub(crate) experiment: ExperimentArgs,
-    /// The drawing, .svg or .dot [default: Graphviz DOT on standard output]
+    /// The drawing, .svg, or .dot or .gv for Graphviz [default: Graphviz DOT on standard output]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// Reads a whole number within limits; as in experiment files `4e6` and `4_000_000` are such.
+fn whole(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + Clone {
+    move |text| {
+        let plain = text.replace('_', "");
+        // Powers of ten are exact below 2^53, far beyond any count that they are written for.
+        let exact = |x: &f64| x.fract() == 0.0 && (0.0..9.0e15).contains(x);
+        let number = plain.parse().ok().or_else(|| plain.parse().ok().filter(exact).map(|x| x as u64));
+        number
+            .filter(|number| limits.contains(number))
+            .ok_or_else(|| format!("it has to be a whole number from {} to {}", limits.start(), limits.end()))
+    }
+}
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let count = whole(1..=MOST_THREADS)(text)?;
+    NonZeroUsize::new(count as usize).ok_or_else(|| "it has to be at least 1".into())
 }

@@ -1,9 +1,9 @@
 //! `hwasp`: design a robot's body and its controller together.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)] // this crate is the one that prints
-
 mod args;
 mod commands;
+mod failure;
+mod output;
 mod progress;
 mod report;
 
@@ -12,9 +12,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
-
-/// Any error, shown with its causes.
-type Failure = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
     let args = Args::parse();
@@ -28,10 +25,9 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{}", report::failure(&*error));
-            // 2 is for input that was wrong from the start, as for wrong arguments.
-            ExitCode::from(if error.is::<hwasp_lab::spec::SpecErrors>() { 2 } else { 1 })
+        Err(failure) => {
+            output::remark(&failure.text());
+            failure.exit_code()
         }
     }
 }

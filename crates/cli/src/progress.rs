@@ -2,11 +2,18 @@
 
 use std::io::IsTerminal;
 
+use hwasp_lab::metrics::MetricsRow;
 use hwasp_lab::{Assembly, Event, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output::remark;
+use crate::report::{grouped, quantity};
+
 /// Lines per training where there is no terminal.
 const LINES: u64 = 20;
+
+/// The message takes what the bar leaves of the line and is cut there: a bar that wraps cannot be redrawn.
+const TEMPLATE: &str = "{percent:>3}% {bar:20.cyan/dim} {wide_msg}";
 
 /// Shows where a training stands.
 pub(crate) struct Progress {
@@ -21,9 +28,11 @@ pub(crate) struct Progress {
 impl Progress {
     pub(crate) fn new(assembly: &Assembly) -> Self {
         let groups = assembly.policy.space().groups();
+        // A terminal that cannot move its cursor gets lines.
+        let dumb = std::env::var_os("TERM").is_none_or(|term| term == "dumb");
         Self {
             bar: ProgressBar::hidden(),
-            terminal: std::io::stderr().is_terminal(),
+            terminal: std::io::stderr().is_terminal() && !dumb,
             units: groups.iter().map(|g| g.dimension.si().to_owned()).collect(),
             env_steps: 1,
             names: Vec::new(),
@@ -40,38 +49,43 @@ impl Progress {
         self.env_steps = env_steps.max(1);
         self.names = totals.to_vec();
         if self.terminal {
-            self.bar = ProgressBar::new(env_steps);
-            let style = "{bar:32.cyan/dim} {percent:>3}%  {msg}  {per_sec}  {eta} left";
+            self.bar = ProgressBar::new(self.env_steps);
             // The template is a constant; should it ever be wrong, the plain bar will do.
-            if let Ok(style) = ProgressStyle::with_template(style) {
-                let per_sec = |state: &indicatif::ProgressState, out: &mut dyn std::fmt::Write| {
-                    let _ = write!(out, "{:.0}k steps/s", state.per_sec() / 1e3);
-                };
-                self.bar.set_style(style.with_key("per_sec", per_sec));
+            if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+                self.bar.set_style(style);
             }
         }
     }
 
-    fn iteration(&mut self, row: &hwasp_lab::metrics::MetricsRow) {
-        let design: Vec<String> = self
-            .names
-            .iter()
-            .zip(&row.design_totals)
-            .zip(&self.units)
-            .map(|((name, total), unit)| format!("{name} {total:.4} {unit}").trim_end().to_owned())
-            .collect();
-        let message = format!("return {:.1}  {}", row.discounted_return, design.join("  "));
+    fn iteration(&mut self, row: &MetricsRow) {
+        let rate = row.env_steps as f64 / row.wall_s.max(1e-9);
+        let totals = self.names.iter().zip(&row.design_totals).zip(&self.units);
+        let design: Vec<String> =
+            totals.map(|((name, total), unit)| format!("{name} {}", quantity(*total, unit))).collect();
+        // What matters most comes first: a narrow terminal shows no more than that.
+        let message = format!("return {:.1}  {}  {:.0}k steps/s", row.discounted_return, design.join("  "), rate / 1e3);
         if self.terminal {
+            let left = self.env_steps.saturating_sub(row.env_steps) as f64 / rate;
             self.bar.set_position(row.env_steps.min(self.env_steps));
-            self.bar.set_message(message);
+            self.bar.set_message(format!("{message}  {} left", duration(left)));
             return;
         }
-        let due = row.env_steps * LINES / self.env_steps;
+        let due = row.env_steps.min(self.env_steps) * LINES / self.env_steps;
         if due > self.lines {
             self.lines = due;
-            let rate = row.env_steps as f64 / row.wall_s.max(1e-9) / 1e3;
-            eprintln!("{:>10} of {} steps  {message}  {rate:.0}k steps/s", row.env_steps, self.env_steps);
+            let total = grouped(self.env_steps);
+            remark(&format!("{:>width$} of {total} steps  {message}", grouped(row.env_steps), width = total.len()));
         }
+    }
+}
+
+/// A time such as `42 s`, `3 min 5 s` or `2 h 10 min`.
+fn duration(seconds: f64) -> String {
+    let s = seconds.ceil() as u64;
+    match s {
+        0..60 => format!("{s} s"),
+        60..3600 => format!("{} min {} s", s / 60, s % 60),
+        _ => format!("{} h {} min", s / 3600, s % 3600 / 60),
     }
 }
 
@@ -80,7 +94,10 @@ impl Observer for Progress {
         match event {
             Event::Started { env_steps, totals } => self.start(env_steps, totals),
             Event::Iteration(row) => self.iteration(row),
-            Event::Evaluating => self.bar.set_message("evaluating"),
+            Event::Evaluating => {
+                self.bar.set_message("evaluating the design on held-out starts");
+                self.bar.tick();
+            }
             Event::Evaluated(_) => self.finish(),
         }
         Ok(())

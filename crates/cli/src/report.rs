@@ -1,23 +1,11 @@
 //! What the program says, as text.
 
-use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_core::Policy;
 use hwasp_lab::spec::Spec;
 use hwasp_lab::{Assembly, Evaluation, MeanInterval, Summary};
-
-/// An error with its causes.
-pub(crate) fn failure(error: &dyn Error) -> String {
-    let mut text = format!("error: {error}");
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let _ = write!(text, "\n  because: {error}");
-        cause = error.source();
-    }
-    text
-}
 
 /// The line before a training.
 pub(crate) fn beginning(spec: &Spec, path: &Path) -> String {
@@ -26,7 +14,7 @@ pub(crate) fn beginning(spec: &Spec, path: &Path) -> String {
         spec.name,
         spec.method.name(),
         spec.seed,
-        spec.train.env_steps,
+        grouped(spec.train.env_steps),
         path.display()
     )
 }
@@ -37,8 +25,13 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
     let stopped = if summary.stopped { " (stopped early)" } else { "" };
     let _ = writeln!(
         text,
-        "\n{} · {} · seed {}{stopped}: {} steps in {:.1} s ({:.0} steps/s)\n",
-        summary.experiment, summary.method, summary.seed, summary.env_steps, summary.wall_s, summary.steps_per_s
+        "\n{} · {} · seed {}{stopped}: {} steps in {:.1} s ({} steps/s)\n",
+        summary.experiment,
+        summary.method,
+        summary.seed,
+        grouped(summary.env_steps),
+        summary.wall_s,
+        grouped(summary.steps_per_s as u64)
     );
     for (name, group) in &summary.design {
         let count = group.values.len();
@@ -66,7 +59,7 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
     text
 }
 
-fn quantity(value: f64, unit: &str) -> String {
+pub(crate) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.4} {unit}").trim_end().to_owned()
 }
 
@@ -90,14 +83,16 @@ pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
     let iterations = spec.train.env_steps.div_ceil(spec.train.rows() as u64);
     let design = policy.space().names().len();
     format!(
-        "{} ({}) is sound\n  problem     {}, {design} design parameters\n  policy      {} parameters, action: {}\n  \
-         training    {} steps: {iterations} iterations of {} episodes of {} steps\n",
+        "{} ({}) is sound\n  problem     {}, {design} design parameter{}\n  policy      {} parameters, action: {}\n  \
+         training    {} steps: {} iterations of {} episodes of {} steps\n",
         spec.name,
         spec.method.name(),
         spec.task.kind().name(),
+        if design == 1 { "" } else { "s" },
         policy.param_count(),
         shorten(policy.action_names()),
-        spec.train.env_steps,
+        grouped(spec.train.env_steps),
+        grouped(iterations),
         spec.train.episodes_per_iteration,
         spec.train.episode_steps,
     )
@@ -108,4 +103,17 @@ fn shorten(names: &[String]) -> String {
     const SHOWN: usize = 4;
     let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
     if names.len() > SHOWN { format!("{shown}, … ({} in all)", names.len()) } else { shown }
+}
+
+/// A count with its digits in threes: 4,000,000.
+pub(crate) fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }

@@ -23,6 +23,8 @@ pub struct Episode {
     pub end: End,
     /// What the controller would have seen next: the state whose value a truncated episode is bootstrapped from.
     pub last_obs: Vec<f32>,
+    /// The law's state there, SI.
+    pub last_state: Vec<f32>,
 }
 
 /// Whole episodes, one row per step, an episode's rows one after the other.
@@ -293,7 +295,7 @@ impl<'p> Lanes<'p> {
         let obs_dim = self.policy.obs_dim();
         let widths = [obs_dim, self.policy.state_dim(), self.policy.action_dim(), 1];
         let mut at = 0;
-        let mut seen = vec![0.0; obs_dim];
+        let (mut seen, mut state) = (vec![0.0; obs_dim], vec![0.0; widths[1]]);
         for (e, end) in self.ends.iter().enumerate() {
             let (end, len) = end.unwrap_or((End::Truncated, self.horizon));
             let from = e * self.horizon;
@@ -308,7 +310,9 @@ impl<'p> Lanes<'p> {
             let mut last_obs = vec![0.0; obs_dim];
             self.environments[e].observe(&mut seen);
             self.policy.normalize(&seen, &mut last_obs);
-            batch.episodes.push(Episode { rows: at..at + len, end, last_obs });
+            self.environments[e].state(&mut state);
+            let last_state = state.iter().map(|&x| x as f32).collect();
+            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state });
             at += len;
         }
         let batch = &mut self.batch;

@@ -3,19 +3,21 @@
 //!
 //! Run it: `cargo run --release -p hwasp-lab --example embed_training`
 
+#![allow(clippy::print_stdout)] // an example shows what it finds
+
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
-use hwasp_core::{Actor, MakeEnvironment, Purpose, Serial, stream};
+use hwasp_core::{Actor, Purpose, Serial, stream};
 use hwasp_lab::{Assembly, Event, Observer, ObserverError, spec, train};
 
-/// Prints every tenth iteration. A run folder, a progress bar and a logger are observers too.
+/// Prints every fiftieth iteration. A run folder, a progress bar and a logger are observers too.
 struct Listener;
 
 impl Observer for Listener {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         match event {
-            Event::Iteration(row) if row.iteration % 10 == 0 => {
+            Event::Iteration(row) if row.iteration % 50 == 0 => {
                 println!(
                     "{:>6} steps: return {:.2}, gear {:.3}",
                     row.env_steps, row.discounted_return, row.design_totals[0]
@@ -30,7 +32,7 @@ impl Observer for Listener {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // An experiment by name, or the path of a TOML file; each override is what `--set` is on the command line.
-    let layers = spec::load("reach")?.with_override("task.goal", "30 cm").with_override("train.env_steps", "60_000");
+    let layers = spec::load("reach")?.with_override("task.goal", "30 cm").with_override("train.env_steps", "400_000");
     let assembly = Assembly::new(&spec::resolve(layers, Some("hwasp"))?)?;
 
     // Set to true from another thread or a signal handler, the flag ends training after the iteration at hand.
@@ -59,8 +61,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     env.observe(&mut seen);
     println!("the point came to {:.3} m", seen[0]);
-    if (seen[0] - 0.3).abs() > 0.02 {
-        return Err("the trained policy misses its goal by more than 2 cm".into());
+    if (seen[0] - 0.3).abs() > 0.05 {
+        return Err("the trained policy misses its goal by more than 5 cm".into());
     }
     Ok(())
 }

@@ -144,7 +144,7 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
 
 fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Problems {
     let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
-    Ok(Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] })
+    Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] }
 }
 
 fn mass_spring(base: &MassSpringSpec, horizon: usize, initial: Initial) -> MassSpringSettings {
@@ -243,6 +243,7 @@ fn learner(spec: &Spec) -> PpoSettings {
                 epochs: baseline.epochs,
                 minibatch_rows: ppo.minibatch_rows,
                 max_grad_norm: positive(ppo.max_grad_norm),
+                privileged: baseline.privileged,
             }),
         },
     }

@@ -99,7 +99,7 @@ mod tests {
         let batch = Batch {
             obs,
             reward: vec![0.0; rows],
-            episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.25] }],
+            episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.25], last_state: vec![] }],
             ..Batch::default()
         };
         let mut baseline = LinearBaseline::new(1, 1e-5);

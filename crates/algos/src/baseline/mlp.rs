@@ -19,6 +19,7 @@ use crate::minibatch::BLOCK;
 /// | `epochs` | 4 | passes over a batch |
 /// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
 /// | `max_grad_norm` | 0.5 | longest gradient |
+/// | `privileged` | false | also sees the law's state, which the controller does not |
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MlpBaselineConfig {
     /// Widths of the hidden layers.
@@ -33,6 +34,9 @@ pub struct MlpBaselineConfig {
     pub minibatch_rows: usize,
     /// Longest gradient.
     pub max_grad_norm: Option<f64>,
+    /// Whether it also sees the law's state. Only the controller has to do without it, and only after training
+    /// (asymmetric actor-critic: Pinto et al. 2018).
+    pub privileged: bool,
 }
 
 impl Default for MlpBaselineConfig {
@@ -44,6 +48,7 @@ impl Default for MlpBaselineConfig {
             epochs: 4,
             minibatch_rows: 1000,
             max_grad_norm: Some(0.5),
+            privileged: false,
         }
     }
 }
@@ -58,6 +63,10 @@ pub struct MlpBaseline {
     adam: Adam,
     /// Running mean and second moment of the targets; none before the first fit.
     moments: Option<(f64, f64)>,
+    /// Centre and scale of each state component that it sees, from the first batch.
+    scaling: Vec<(f32, f32)>,
+    obs_dim: usize,
+    state_dim: usize,
     seed: u64,
     tape: MlpTape<f32>,
 }
@@ -67,8 +76,9 @@ const MOMENT_RATE: f64 = 0.1;
 
 impl MlpBaseline {
     /// Zero or near zero everywhere until the first fit.
-    pub fn new(config: MlpBaselineConfig, obs_dim: usize, seed: u64) -> Self {
-        let mut sizes = vec![obs_dim];
+    pub fn new(config: MlpBaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
+        let seen = if config.privileged { state_dim } else { 0 };
+        let mut sizes = vec![obs_dim + seen];
         sizes.extend(&config.hidden);
         sizes.push(1);
         let network = Mlp::new(&sizes, Activation::Tanh, Activation::Identity);
@@ -76,7 +86,33 @@ impl MlpBaseline {
         let params = network.init(0.1, || weights.random::<f64>());
         let adam = Adam::new(AdamConfig::default(), params.len());
         let tape = network.tape(BLOCK);
-        Self { config, network, params, adam, moments: None, seed, tape }
+        let scaling = vec![(0.0, 1.0); seen];
+        Self { config, network, params, adam, moments: None, scaling, obs_dim, state_dim, seed, tape }
+    }
+
+    /// Takes centre and scale of the state from a batch.
+    fn take_scaling(&mut self, batch: &Batch) {
+        let n = batch.rows().max(1) as f64;
+        for (s, scaling) in self.scaling.iter_mut().enumerate() {
+            let column = || batch.state.iter().skip(s).step_by(self.state_dim).map(|&x| f64::from(x));
+            let mean = column().sum::<f64>() / n;
+            let std = (column().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+            *scaling = (mean as f32, if std > 0.0 { std as f32 } else { 1.0 });
+        }
+    }
+
+    /// Writes what the network sees of one row.
+    #[inline]
+    fn fill(&self, obs: &[f32], state: &[f32], to: &mut [f32]) {
+        to[..self.obs_dim].copy_from_slice(obs);
+        for ((to, x), (centre, scale)) in to[self.obs_dim..].iter_mut().zip(state).zip(&self.scaling) {
+            *to = (x - centre) / scale;
+        }
+    }
+
+    fn fill_row(&self, batch: &Batch, row: usize, to: &mut [f32]) {
+        let obs = &batch.obs[row * self.obs_dim..][..self.obs_dim];
+        self.fill(obs, &batch.state[row * self.state_dim..][..self.state_dim], to);
     }
 
     fn scale(&self) -> (f64, f64) {
@@ -87,18 +123,25 @@ impl MlpBaseline {
     pub fn predict(&mut self, batch: &Batch) -> (Vec<f32>, Vec<f32>) {
         let (mean, std) = self.scale();
         self.network.bind(&self.params, &mut self.tape);
-        let last: Vec<f32> = batch.episodes.iter().flat_map(|e| e.last_obs.iter().copied()).collect();
-        let obs_dim = self.network.inputs();
-        let mut run = |obs: &[f32]| {
-            let mut values = Vec::with_capacity(obs.len() / obs_dim);
-            for block in obs.chunks(BLOCK * obs_dim) {
-                self.network.forward(block, block.len() / obs_dim, &mut self.tape);
+        let width = self.network.inputs();
+        let mut seen = vec![0.0; batch.rows() * width];
+        for (row, to) in seen.chunks_exact_mut(width).enumerate() {
+            self.fill_row(batch, row, to);
+        }
+        let mut last = vec![0.0; batch.episodes.len() * width];
+        for (episode, to) in batch.episodes.iter().zip(last.chunks_exact_mut(width)) {
+            self.fill(&episode.last_obs, &episode.last_state, to);
+        }
+        let mut run = |seen: &[f32]| {
+            let mut values = Vec::with_capacity(seen.len() / width);
+            for block in seen.chunks(BLOCK * width) {
+                self.network.forward(block, block.len() / width, &mut self.tape);
                 let (output, stride) = self.tape.output();
                 values.extend(output.iter().step_by(stride).map(|&v| (mean + std * f64::from(v)) as f32));
             }
             values
         };
-        (run(&batch.obs), run(&last))
+        (run(&seen), run(&last))
     }
 
     /// Moves the running moments towards those of `targets` and keeps V as it is.
@@ -123,16 +166,19 @@ impl MlpBaseline {
 
     /// Several epochs of Adam on the squared error. The order of rows comes from the stream of this iteration.
     pub fn fit(&mut self, batch: &Batch, targets: &[f32], progress: f64, iteration: u64) {
+        if self.moments.is_none() {
+            self.take_scaling(batch);
+        }
         self.follow(targets);
         let (mean, std) = self.scale();
-        let (rows, obs_dim) = (batch.rows(), self.network.inputs());
+        let (rows, width) = (batch.rows(), self.network.inputs());
         let minibatch = if self.config.minibatch_rows == 0 { rows } else { self.config.minibatch_rows };
         let decay = 1.0 + (self.config.learning_rate_final - 1.0) * progress;
         let rate = vec![(self.config.learning_rate * decay) as f32; self.params.len()];
         let mut order: Vec<u32> = (0..rows as u32).collect();
         let mut shuffle = stream(self.seed, Purpose::Baseline, 1, iteration);
         let mut gradient = vec![0.0; self.params.len()];
-        let mut obs = vec![0.0; BLOCK * obs_dim];
+        let mut seen = vec![0.0; BLOCK * width];
         let mut cotangent = vec![0.0; BLOCK];
         for _ in 0..self.config.epochs {
             order.shuffle(&mut shuffle);
@@ -141,17 +187,17 @@ impl MlpBaseline {
                 let weight = 1.0 / indices.len() as f32;
                 for block in indices.chunks(BLOCK) {
                     let rows = block.len();
-                    for (to, &i) in obs.chunks_exact_mut(obs_dim).zip(block) {
-                        to.copy_from_slice(&batch.obs[i as usize * obs_dim..][..obs_dim]);
+                    for (to, &i) in seen.chunks_exact_mut(width).zip(block) {
+                        self.fill_row(batch, i as usize, to);
                     }
-                    let obs = &obs[..rows * obs_dim];
-                    self.network.forward(obs, rows, &mut self.tape);
+                    let seen = &seen[..rows * width];
+                    self.network.forward(seen, rows, &mut self.tape);
                     let (output, stride) = self.tape.output();
                     for ((c, &v), &i) in cotangent.iter_mut().zip(output.iter().step_by(stride)).zip(block) {
                         let target = (f64::from(targets[i as usize]) - mean) / std;
                         *c = (v - target as f32) * weight;
                     }
-                    self.network.vjp(obs, &cotangent[..rows], &mut self.tape);
+                    self.network.vjp(seen, &cotangent[..rows], &mut self.tape);
                 }
                 gradient.fill(0.0);
                 self.network.gradient(&self.tape, &mut gradient);
@@ -170,7 +216,7 @@ mod tests {
     fn batch(rows: usize) -> (Batch, Vec<f32>) {
         let obs: Vec<f32> = (0..rows).map(|i| ((i * 37 % 101) as f32) / 50.0 - 1.0).collect();
         let targets = obs.iter().map(|o| -300.0 + 80.0 * o * o).collect();
-        let episodes = vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5] }];
+        let episodes = vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5], last_state: vec![] }];
         (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)
     }
 
@@ -178,7 +224,7 @@ mod tests {
     fn learns_a_parabola_far_from_zero() {
         let (batch, targets) = batch(400);
         let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 200, ..MlpBaselineConfig::default() };
-        let mut baseline = MlpBaseline::new(config, 1, 5);
+        let mut baseline = MlpBaseline::new(config, 1, 0, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let (values, last) = baseline.predict(&batch);
         let worst = values.iter().zip(&targets).map(|(v, t)| (v - t).abs()).fold(0.0, f32::max);
@@ -189,7 +235,7 @@ mod tests {
     #[test]
     fn moving_the_moments_does_not_move_the_values() {
         let (batch, targets) = batch(100);
-        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 5);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 0, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let before = baseline.predict(&batch).0;
         baseline.follow(&vec![1000.0; 100]);

@@ -33,11 +33,11 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// A fresh one for observations of `obs_dim` components.
-    pub fn new(config: &BaselineConfig, obs_dim: usize, seed: u64) -> Self {
+    /// A fresh one for observations of `obs_dim` components and a state of `state_dim`.
+    pub fn new(config: &BaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
         match config {
             BaselineConfig::Linear { ridge } => Self::Linear(LinearBaseline::new(obs_dim, *ridge)),
-            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, seed))),
+            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, state_dim, seed))),
         }
     }
 

@@ -1,15 +1,11 @@
 //! `hwasp check`.
 
-use hwasp_lab::Assembly;
-
 use super::experiment;
-use crate::Failure;
 use crate::args::ExperimentArgs;
-use crate::report;
+use crate::failure::Failure;
+use crate::{output, report};
 
 pub(crate) fn run(args: &ExperimentArgs) -> Result<(), Failure> {
-    let spec = experiment(args, &[])?;
-    let assembly = Assembly::new(&spec)?;
-    print!("{}", report::experiment(&spec, &assembly));
-    Ok(())
+    let (spec, assembly) = experiment(args, &[])?;
+    Ok(output::print(&report::experiment(&spec, &assembly))?)
 }

@@ -1,24 +1,24 @@
 //! `hwasp eval`.
 
-use hwasp_lab::{SavedRun, evaluate};
+use hwasp_lab::evaluate;
 
-use super::executor;
-use crate::Failure;
+use super::{executor, saved_run};
 use crate::args::EvalArgs;
-use crate::report;
+use crate::failure::Failure;
+use crate::{output, report};
 
 pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
-    let saved = SavedRun::open(&args.run)?;
-    let params = saved.params()?;
+    let saved = saved_run(&args.run)?;
+    let params = saved.params().map_err(Failure::input)?;
     let settings = &saved.assembly().spec().train;
-    let episodes = args.episodes.map_or(settings.evaluation_episodes as u64, std::num::NonZeroU64::get);
+    let episodes = args.episodes.unwrap_or(settings.evaluation_episodes as u64);
     let seed = args.seed.unwrap_or(settings.evaluation_seed);
     let executor = executor(args.threads)?;
     let evaluation = evaluate(saved.assembly(), &params, (episodes, seed), &*executor)?;
-    if args.json {
-        println!("{}", serde_json::to_string_pretty(&evaluation)?);
+    let text = if args.json {
+        format!("{}\n", serde_json::to_string_pretty(&evaluation)?)
     } else {
-        print!("{}", report::evaluation(&evaluation));
-    }
-    Ok(())
+        report::evaluation(&evaluation)
+    };
+    Ok(output::print(&text)?)
 }

@@ -1,25 +1,28 @@
 //! `hwasp graph`.
 
-use hwasp_lab::Assembly;
+use std::io;
 
 use super::experiment;
-use crate::Failure;
 use crate::args::GraphArgs;
+use crate::failure::Failure;
+use crate::output;
 
 pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
-    let spec = experiment(&args.experiment, &[])?;
-    let assembly = Assembly::new(&spec)?;
-    let (dot, svg) = (assembly.drawing().dot, assembly.drawing().svg);
+    let (_, assembly) = experiment(&args.experiment, &[])?;
+    let drawing = assembly.drawing();
     let Some(path) = &args.out else {
-        print!("{dot}");
-        return Ok(());
+        return Ok(output::print(&drawing.dot)?);
     };
-    let text = match path.extension().and_then(|e| e.to_str()) {
-        Some("svg") => svg,
-        Some("dot" | "gv") => dot,
-        _ => return Err(format!("{} ends neither in .svg nor in .dot", path.display()).into()),
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    let text = match extension.as_deref() {
+        Some("svg") => drawing.svg,
+        Some("dot" | "gv") => drawing.dot,
+        _ => {
+            let text = "names no format to draw in: end it in .svg, or in .dot or .gv for Graphviz";
+            return Err(Failure::input(format!("`{}` {text}", path.display())));
+        }
     };
-    std::fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-    println!("{}", path.display());
-    Ok(())
+    std::fs::write(path, text)
+        .map_err(|e| io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display())))?;
+    Ok(output::print(&format!("{}\n", path.display()))?)
 }

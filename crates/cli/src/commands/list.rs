@@ -1,14 +1,18 @@
 //! `hwasp list`.
 
+use std::fmt::Write;
+
 use hwasp_lab::spec::{self, EXPERIMENTS};
 
-use crate::Failure;
+use crate::failure::Failure;
+use crate::output;
 
 pub(crate) fn run() -> Result<(), Failure> {
     let width = EXPERIMENTS.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let mut text = String::new();
     for (name, _) in EXPERIMENTS {
         let spec = spec::resolve(spec::load(name)?, None)?;
-        println!("{name:width$}  {}", spec.description);
+        let _ = writeln!(text, "{name:width$}  {}", spec.description);
     }
-    Ok(())
+    Ok(output::print(&text)?)
 }

@@ -7,16 +7,19 @@ pub(crate) mod list;
 pub(crate) mod plot;
 pub(crate) mod train;
 
+use std::num::NonZeroUsize;
+use std::path::Path;
+
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_lab::spec::{self, Spec};
-use std::num::NonZeroUsize;
+use hwasp_lab::{Assembly, SavedRun};
 
-use crate::Failure;
 use crate::args::ExperimentArgs;
+use crate::failure::Failure;
 
-/// The experiment that arguments name, with further settings on top.
-fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<Spec, Failure> {
-    let mut layers = spec::load(&args.experiment)?;
+/// The experiment that arguments name, with further settings on top, put together.
+fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
+    let mut layers = spec::load(&args.experiment).map_err(Failure::input)?;
     for assignment in args.set() {
         layers = layers.with_assignment(assignment);
     }
@@ -24,7 +27,19 @@ fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<Spec,
         let key = if *flag == "env-steps" { "train.env_steps" } else { flag };
         layers = layers.with_option(format!("--{flag} {value}"), key, value);
     }
-    Ok(spec::resolve(layers, args.method())?)
+    let spec = spec::resolve(layers, args.method()).map_err(Failure::input)?;
+    let assembly = Assembly::new(&spec).map_err(Failure::input)?;
+    Ok((spec, assembly))
+}
+
+/// The run that was written to a folder.
+fn saved_run(path: &Path) -> Result<SavedRun, Failure> {
+    if path.is_dir() {
+        return SavedRun::open(path).map_err(Failure::input);
+    }
+    let what = if path.exists() { "is not a folder" } else { "does not exist" };
+    let hint = "name a run folder; `hwasp train` says where it writes one, under runs/ unless --out names another";
+    Err(Failure::input(format!("{} {what}\n  = hint: {hint}", path.display())))
 }
 
 fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {

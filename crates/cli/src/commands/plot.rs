@@ -1,14 +1,16 @@
 //! `hwasp plot`.
 
 use hwasp_lab::SavedRun;
-use hwasp_lab::plot::{curves, write_plot};
+use hwasp_lab::plot::{PlotError, curves, write_plot};
 
-use crate::Failure;
+use super::saved_run;
 use crate::args::PlotArgs;
+use crate::failure::Failure;
+use crate::output;
 
 pub(crate) fn run(args: &PlotArgs) -> Result<(), Failure> {
-    let runs = args.runs.iter().map(|path| SavedRun::open(path)).collect::<Result<Vec<_>, _>>()?;
-    let all = runs.iter().map(SavedRun::curve).collect::<Result<Vec<_>, _>>()?;
+    let runs = args.runs.iter().map(|path| saved_run(path)).collect::<Result<Vec<_>, _>>()?;
+    let all = runs.iter().map(SavedRun::curve).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let mut options = runs[0].plot_options(args.title.clone());
     for run in &runs[1..] {
         let further = run.plot_options(String::new()).panels;
@@ -18,11 +20,13 @@ pub(crate) fn run(args: &PlotArgs) -> Result<(), Failure> {
             }
         }
     }
-    let plot = curves(&all, &options)?;
+    let plot = curves(&all, &options).map_err(Failure::input)?;
     for note in &plot.notes {
-        eprintln!("note: {note}");
+        output::remark(&format!("note: {note}"));
     }
-    write_plot(&args.out, &plot)?;
-    println!("{}", args.out.display());
-    Ok(())
+    write_plot(&args.out, &plot).map_err(|error| match error {
+        PlotError::Extension { .. } => Failure::input(error),
+        _ => error.into(),
+    })?;
+    Ok(output::print(&format!("{}\n", args.out.display()))?)
 }

@@ -4,24 +4,26 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_lab::{Assembly, Observer, Provenance, RunFolder, train};
+use hwasp_lab::{Observer, Provenance, RunFolder, train};
 
 use super::{executor, experiment};
-use crate::Failure;
 use crate::args::TrainArgs;
+use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::report;
+use crate::{output, report};
 
 pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let mut further = Vec::new();
     further.extend(args.seed.map(|seed| ("seed", seed.to_string())));
     further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
-    let spec = experiment(&args.experiment, &further)?;
-    let assembly = Assembly::new(&spec)?;
+    let (spec, assembly) = experiment(&args.experiment, &further)?;
     let executor = executor(args.threads)?;
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
-    let provenance = Provenance::new(std::env::args().collect(), args.threads.get(), spec.seed);
-    let mut folder = RunFolder::create(&path, &spec, &provenance)?;
+    // Folders may be called what is no UTF-8.
+    let typed = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
+    let provenance = Provenance::new(typed, args.threads.get(), spec.seed);
+    // A folder that cannot be had is known before the work begins.
+    let mut folder = RunFolder::create(&path, &spec, &provenance).map_err(Failure::input)?;
 
     let stop = Arc::new(AtomicBool::new(false));
     let signal = Arc::clone(&stop);
@@ -35,7 +37,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let mut progress = Progress::new(&assembly);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];
     if !args.quiet {
-        eprintln!("{}", report::beginning(&spec, &path));
+        output::remark(&report::beginning(&spec, &path));
         observers.push(&mut progress);
     }
     let trained = train(&assembly, &*executor, &mut observers, &stop);
@@ -43,7 +45,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     progress.finish();
     let summary = folder.finish(&assembly, &trained?)?;
     if !args.quiet {
-        print!("{}", report::training(&summary, &path));
+        output::print(&report::training(&summary, &path))?;
     }
     Ok(())
 }

@@ -85,7 +85,7 @@ impl PolicySpec {
         let names = space.names();
         let uniforms: Vec<String> = free.iter().map(|&i| names[i].clone()).collect();
         let (commands, states) = (env.command.len(), env.state.len());
-        let mut columns: Vec<String> = env.command.iter().map(|p| p.name.clone()).collect();
+        let mut columns: Vec<String> = env.command.iter().map(|p| format!("controller: {}", p.name)).collect();
         columns.extend(env.state.iter().map(|p| p.name.clone()));
         columns.extend(layout.sampled.iter().map(|&i| format!("{} (sample)", names[i])));
         let held: Vec<bool> = (0..columns.len()).map(|c| c >= commands).collect();

@@ -87,6 +87,7 @@ pub struct PpoSpec {
 /// | `hidden` | [32, 32] | widths of the network's hidden layers | up to 16 of 1 to 4096 |
 /// | `learning_rate` | 1e-3 | Adam's | 1e-9 to 1 |
 /// | `epochs` | 4 | passes over a batch, in PPO's minibatches | 1 to 1000 |
+/// | `privileged` | false | the network also sees the law's state, which the controller does not | |
 /// | `ridge` | 1e-5 | regularisation of the linear one | 0 to 1e6 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BaselineSpec {
@@ -98,6 +99,8 @@ pub struct BaselineSpec {
     pub learning_rate: f64,
     /// Passes over a batch.
     pub epochs: usize,
+    /// Whether the network also sees the law's state.
+    pub privileged: bool,
     /// Regularisation of the linear one.
     pub ridge: f64,
 }
@@ -149,6 +152,7 @@ impl BaselineSpec {
             hidden: s.counts("hidden", &[32, 32], MOST_LAYERS, &(1..=WIDEST_LAYER)),
             learning_rate: s.number("learning_rate", 1e-3, 1e-9..=1.0),
             epochs: s.count("epochs", 4, 1..=1000),
+            privileged: s.flag("privileged", false),
             ridge: s.number("ridge", 1e-5, 0.0..=1e6),
         };
         s.finish();

@@ -1,0 +1,14 @@
+//! The program as a user meets it: what it prints, what it writes, what it refuses and with which exit status.
+//!
+//! A transcript is `$ the command`, standard output, standard error with `! ` before each line, and the exit status.
+//! Figures that were measured are `#`.
+
+#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+
+mod arguments;
+mod experiments;
+mod folders;
+mod help;
+mod pipes;
+mod runs;
+mod sandbox;

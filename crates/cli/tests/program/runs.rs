@@ -1,0 +1,102 @@
+//! Trainings and what can be done with them.
+
+use std::fs;
+#[cfg(unix)]
+use std::{
+    process::Stdio,
+    time::{Duration, Instant},
+};
+
+use crate::sandbox::{Sandbox, TINY, without_figures};
+
+#[test]
+fn a_training_and_its_evaluation() {
+    let sandbox = Sandbox::new("train");
+    let transcript = sandbox.transcript(&[TINY, TINY, "eval runs/reach-hwasp-seed0", "eval runs/reach-hwasp-seed0-2"]);
+    insta::assert_snapshot!(without_figures(&transcript));
+}
+
+#[test]
+fn a_training_of_a_mechanism_with_many_parts() {
+    let sandbox = Sandbox::new("train-springs");
+    let line =
+        "train bar-length --method minimal --seed 3 --env-steps 4000 --set train.evaluation_episodes=2 --out run";
+    insta::assert_snapshot!(without_figures(&sandbox.transcript(&[line])));
+}
+
+#[test]
+fn the_same_bits_with_one_thread_and_two() {
+    let sandbox = Sandbox::new("threads");
+    sandbox.transcript(&[&format!("{TINY} --out one"), &format!("{TINY} --out two --threads 2")]);
+    assert_eq!(sandbox.read("one/policy.safetensors"), sandbox.read("two/policy.safetensors"));
+    assert_ne!(sandbox.read("one/provenance.json"), sandbox.read("two/provenance.json"));
+}
+
+#[test]
+fn an_evaluation_as_json_is_that_of_the_summary() {
+    let sandbox = Sandbox::with_run("eval-json");
+    let output = sandbox.run("eval run --json");
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&sandbox.read("run/summary.json")).unwrap();
+    assert_eq!(printed, summary["evaluation"]);
+    insta::assert_snapshot!(without_figures(&String::from_utf8(output.stdout).unwrap()));
+}
+
+#[test]
+fn an_evaluation_of_other_episodes() {
+    let sandbox = Sandbox::with_run("eval-other");
+    let evaluation = |line: &str| -> serde_json::Value {
+        serde_json::from_slice(&sandbox.run(&format!("eval run --json {line}")).stdout).unwrap()
+    };
+    let usual = evaluation("");
+    let other = evaluation("--episodes 30 --seed 9");
+    assert_eq!((&other["episodes"], &other["seed"]), (&30.into(), &9.into()));
+    assert_ne!(usual["return"], other["return"]);
+    assert_eq!(other, evaluation("--episodes 30 --seed 9 --threads 2"));
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let output = Sandbox::new("quiet").run(&format!("{TINY} --quiet"));
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
+}
+
+#[test]
+fn plots() {
+    let sandbox = Sandbox::with_run("plot");
+    sandbox.run(&format!("{TINY} --quiet --seed 1 --out other"));
+    insta::assert_snapshot!(sandbox.transcript(&[
+        "plot run",
+        "plot run other --title Gears --out both.svg",
+        "plot run other --out both.PNG"
+    ]));
+    let svg = |name: &str| String::from_utf8(sandbox.read(name)).unwrap();
+    let (one, both) = (svg("curves.svg"), svg("both.svg"));
+    assert!(one.contains("discounted return") && one.contains("gear") && !one.contains("Gears"), "{one}");
+    assert!(both.contains("Gears"), "{both}");
+    let png = sandbox.read("both.PNG");
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000, "{} bytes", png.len());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_training_keeps_what_it_has() {
+    let sandbox = Sandbox::new("interrupted");
+    let line = "train reach --env-steps 1e11 --set train.evaluation_episodes=20 --out run";
+    let mut command = sandbox.command(line);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // Two iterations have to be there; a child that cannot begin would never write them.
+    let rows = || fs::read_to_string(sandbox.path("run/metrics.csv")).map_or(0, |text| text.lines().count());
+    let began = Instant::now();
+    while rows() < 3 && began.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("(stopped early)"), "{output:?}");
+    let summary: serde_json::Value = serde_json::from_slice(&sandbox.read("run/summary.json")).unwrap();
+    assert_eq!(summary["stopped"], true);
+    assert!(sandbox.run("eval run").status.success());
+}

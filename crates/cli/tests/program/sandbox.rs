@@ -1,0 +1,128 @@
+//! Empty folders to run the program in.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+/// A training that takes milliseconds: two iterations.
+pub(crate) const TINY: &str = "train reach --env-steps 2400 --set train.evaluation_episodes=20";
+
+/// An empty folder of a test's own.
+pub(crate) struct Sandbox(PathBuf);
+
+impl Sandbox {
+    /// Empties it, should an earlier test run have left something.
+    pub(crate) fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// One with a finished run in the folder `run`.
+    pub(crate) fn with_run(name: &str) -> Self {
+        static RUN: OnceLock<Sandbox> = OnceLock::new();
+        let trained = RUN.get_or_init(|| {
+            let sandbox = Sandbox::new("trained-once");
+            assert!(sandbox.run(&format!("{TINY} --out run")).status.success());
+            sandbox
+        });
+        let sandbox = Self::new(name);
+        fs::create_dir(sandbox.path("run")).unwrap();
+        for file in fs::read_dir(trained.path("run")).unwrap() {
+            let file = file.unwrap();
+            fs::copy(file.path(), sandbox.path("run").join(file.file_name())).unwrap();
+        }
+        sandbox
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
+        fs::write(self.path(name), contents).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    /// Changes a text file; the text has to be there.
+    pub(crate) fn replace(&self, name: &str, from: &str, to: &str) {
+        let text = String::from_utf8(self.read(name)).unwrap();
+        assert!(text.contains(from), "{name} has no {from:?}:\n{text}");
+        self.write(name, text.replace(from, to));
+    }
+
+    /// The program with words parted by spaces, in this folder, with nothing of the caller's environment.
+    pub(crate) fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hwasp"));
+        command.args(line.split_whitespace()).current_dir(&self.0).env_clear().stdin(Stdio::null());
+        command
+    }
+
+    pub(crate) fn run(&self, line: &str) -> Output {
+        let output = self.command(line).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(!stderr.contains("panicked"), "{line}\n{stderr}");
+        output
+    }
+
+    /// What a user sees of some commands.
+    pub(crate) fn transcript(&self, lines: &[&str]) -> String {
+        lines.iter().map(|line| shown(line, &self.run(line))).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The same for commands that ask for what is wrong: each ends with status 2 and prints no result.
+    pub(crate) fn refused(&self, lines: &[&str]) -> String {
+        let mut text = String::new();
+        for line in lines {
+            let output = self.run(line);
+            let shown = shown(line, &output);
+            assert_eq!(output.status.code(), Some(2), "{shown}");
+            assert!(output.stdout.is_empty(), "{shown}");
+            let _ = writeln!(text, "{shown}");
+        }
+        text
+    }
+}
+
+fn shown(line: &str, output: &Output) -> String {
+    let mut text = format!("$ hwasp {line}\n{}", String::from_utf8_lossy(&output.stdout));
+    for line in String::from_utf8_lossy(&output.stderr).lines() {
+        let _ = writeln!(text, "{}", format!("! {line}").trim_end());
+    }
+    match output.status.code() {
+        Some(code) => writeln!(text, "[exit {code}]"),
+        None => writeln!(text, "[{}]", output.status),
+    }
+    .unwrap();
+    text
+}
+
+/// Replaces numbers with a decimal point and speeds by `#`, with the spaces that aligned them.
+pub(crate) fn without_figures(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let number = &rest[start..];
+        let length = number.find(|c: char| !c.is_ascii_digit() && !matches!(c, '.' | ',')).unwrap_or(number.len());
+        let (number, after) = number.split_at(length);
+        let number = number.trim_end_matches(['.', ',']);
+        let after = if after.len() + number.len() < rest.len() - start { &rest[start + number.len()..] } else { after };
+        out.push_str(&rest[..start]);
+        if number.contains('.') || after.starts_with(" steps/s") || after.starts_with("k steps/s") {
+            let kept = out.trim_end_matches('-').trim_end_matches(' ').len();
+            let spaced = out[kept..].contains(' ');
+            out.truncate(kept);
+            out.push_str(if spaced { " #" } else { "#" });
+        } else {
+            out.push_str(number);
+        }
+        rest = after;
+    }
+    out + rest
+}

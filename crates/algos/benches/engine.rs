@@ -114,7 +114,8 @@ fn ppo_step(c: &mut Criterion) {
 fn iteration(c: &mut Criterion) {
     let (problem, policy) = springs();
     let full = batch(&problem, &policy, 20, 200);
-    let settings = PpoSettings { ppo: PpoConfig::default(), baseline: BaselineConfig::Mlp(MlpBaselineConfig::default()) };
+    let settings =
+        PpoSettings { ppo: PpoConfig::default(), baseline: BaselineConfig::Mlp(MlpBaselineConfig::default()) };
     let mut ppo = Ppo::new(&settings, Arc::clone(&policy), policy.init(1, 1.0), 1);
     let mut group = c.benchmark_group("iteration of 20 episodes of 200 steps");
     group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(30);

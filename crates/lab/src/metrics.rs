@@ -16,6 +16,7 @@
 
 mod error;
 
+use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
 pub use error::MetricsError;
@@ -88,7 +89,7 @@ impl<W: Write> MetricsWriter<W> {
         let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy];
         for value in fixed.iter().chain(&row.design_totals) {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
-            text.push_str(&format!(",{value:?}"));
+            let _ = write!(text, ",{value:?}");
         }
         self.line(&text)
     }

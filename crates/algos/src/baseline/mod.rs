@@ -37,7 +37,9 @@ impl Baseline {
     pub fn new(config: &BaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
         match config {
             BaselineConfig::Linear { ridge } => Self::Linear(LinearBaseline::new(obs_dim, *ridge)),
-            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, state_dim, seed))),
+            BaselineConfig::Mlp(config) => {
+                Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, state_dim, seed)))
+            }
         }
     }
 

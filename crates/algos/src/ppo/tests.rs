@@ -94,7 +94,9 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
         action: ACTION.map(|x| x as f32).to_vec(),
         log_prob: (0..3).map(old).collect(),
         reward: advantage.to_vec(),
-        episodes: (0..3).map(|i| Episode { rows: i..i + 1, end: End::Terminated, last_obs: vec![0.0], last_state: vec![] }).collect(),
+        episodes: (0..3)
+            .map(|i| Episode { rows: i..i + 1, end: End::Terminated, last_obs: vec![0.0], last_state: vec![] })
+            .collect(),
     }
 }
 

@@ -1,7 +1,6 @@
 //! Training without the program around it.
 
 #![allow(clippy::unwrap_used)]
-
 // Every test file is a program of its own and uses some of this.
 #![allow(dead_code)]
 

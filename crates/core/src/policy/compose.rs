@@ -74,7 +74,8 @@ impl PolicySpec {
             }
         }
         let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
-        let free: Vec<usize> = (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
+        let free: Vec<usize> =
+            (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
         let mut composition = Composition { program: self.trace(env, &layout, &free), layout, free, noise: Vec::new() };
         composition.noise = self.component_noise(env, &composition.layout);
         Ok(composition)

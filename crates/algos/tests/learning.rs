@@ -1,18 +1,45 @@
-//! Learning bars.
+//! Learning bars, with fixed seeds: a change that breaks learning without breaking anything else fails here.
+//!
+//! The thresholds leave a margin to what six seeds (0 to 5) reached when they were set; the numbers stand beside them.
+
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod common;
 
 use common::Case;
 use hwasp_core::Placement;
 
+/// 60,000 steps. From returns of -9.8 to -4.7 six seeds went to -1.948 to -1.944 with the gear in the graph, all at 1.000,
+/// and to -1.953 to -1.945 with the gear in the action, at 0.950 to 1.058. The best gear is 1.
 #[test]
-fn measure() {
-    let iterations: u64 = std::env::var("ITER").map_or(40, |s| s.parse().unwrap());
-    for place in [Placement::Graph, Placement::Action] {
-        for seed in 0..6 {
-            let start = std::time::Instant::now();
-            let case = if std::env::var("MS").is_ok() { Case::mass_spring(place) } else { Case::reach(place) };
-            println!("{place:?} {seed} {:?} {:?}", case.learn(seed, iterations), start.elapsed());
-        }
+fn reach_is_learned() {
+    for (place, off) in [(Placement::Graph, 0.02), (Placement::Action, 0.15)] {
+        let [(before, _), (after, gear)] = Case::reach(place).learn(3, 100);
+        println!("{place:?}: {before} to {after} with gear {gear}");
+        assert!(before < -4.0, "there was nothing to learn: {before}");
+        assert!(after > -2.0, "{place:?}: {after}");
+        assert!((gear - 1.0).abs() < off, "{place:?}: gear {gear}");
     }
+}
+
+/// 200,000 steps, a twentieth of a whole training. With the springs in the graph six seeds went to -495 to -429 and 20.0
+/// to 22.2 N/m; the optimum is -399.9 and 19.6 N/m.
+#[test]
+fn springs_in_the_graph_are_learned() {
+    let [(before, total), (after, trained)] = Case::mass_spring(Placement::Graph).learn(0, 50);
+    println!("{before} at {total} N/m to {after} at {trained} N/m");
+    assert!(before < -1000.0, "there was nothing to learn: {before}");
+    assert!(after > -540.0, "{after}");
+    assert!((trained - 19.6).abs() < 4.0, "{trained} N/m");
+}
+
+/// The clip bounds what ten sampled springs can move in an update, so that they take longer: in 200,000 steps six seeds
+/// went to -880 to -599 only, and their springs a fifth to two fifths of their way. This one went to -644 and 41 % of it.
+#[test]
+fn springs_in_the_action_are_learned() {
+    let [(before, total), (after, trained)] = Case::mass_spring(Placement::Action).learn(3, 50);
+    println!("{before} at {total} N/m to {after} at {trained} N/m");
+    assert!(before < -1000.0, "there was nothing to learn: {before}");
+    assert!(after > -740.0, "{after}");
+    assert!((trained - 19.6).abs() < 0.8 * (total - 19.6).abs(), "{total} N/m became {trained} N/m");
 }

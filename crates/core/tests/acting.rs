@@ -1,5 +1,7 @@
 //! Actors and policies speak of the same Gaussian.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 mod common;
 
 use std::sync::Arc;

@@ -1,5 +1,7 @@
 //! The derivatives of whole policies, through controller and law, for every kind of placement.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 mod common;
 
 use hwasp_core::{HardwarePolicy, Policy, Rows};

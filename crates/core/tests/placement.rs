@@ -1,5 +1,7 @@
 //! Placements that cannot be are refused with the numbers.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 mod common;
 
 use hwasp_core::{HardwarePolicy, Placement};

@@ -1,5 +1,7 @@
 //! Rollouts: the same bits for any number of threads and any split, episodes that end early, and numbers that are none.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 mod common;
 
 use std::ops::Range;

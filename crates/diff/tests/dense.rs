@@ -103,6 +103,13 @@ proptest! {
     }
 }
 
+/// Hidden layers narrower than a vector were once taken for narrow last layers, and their gradient was zero.
+#[test]
+fn narrow_hidden_layers_differentiate() {
+    check(&case(&[1, 1, 1, 1], Activation::Tanh, Activation::Identity, 3, 5));
+    check(&case(&[2, 3, 20, 2], Activation::Tanh, Activation::Tanh, 5, 6));
+}
+
 #[test]
 fn relu_layers_differentiate() {
     // Fixed seeds: a sum within a finite difference of the kink would fail by its own fault.

@@ -1,5 +1,7 @@
 //! Programs against plain `f64`, against finite differences and against themselves on other blocks of rows.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_diff::{GradCheckError, GradCheckSettings, Program, Scalar, gradcheck};
 use proptest::prelude::*;
 

@@ -1,5 +1,7 @@
 //! Every way in which an experiment can be wrong, as it is told.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_lab::spec::{LONGEST_FILE, Layers, load, resolve};
 
 /// The faults of a text that is not what it should be.

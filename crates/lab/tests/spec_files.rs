@@ -1,5 +1,7 @@
 //! Experiments that come with the program: they resolve for every method, and what is written is read back the same.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_lab::spec::{EXPERIMENTS, InitialSpec, Layers, Method, Place, Problem, Spec, load, resolve};
 use proptest::prelude::*;
 

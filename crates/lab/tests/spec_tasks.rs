@@ -1,5 +1,7 @@
 //! What a spec says of its task, so that files can be checked without one, is what the task itself says.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_lab::Assembly;
 use hwasp_lab::spec::{EXPERIMENTS, Method, load, resolve};
 

@@ -1,5 +1,7 @@
 //! Every environment of this crate keeps the invariants of all environments.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_core::check_env;
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};

@@ -1,5 +1,7 @@
 //! The laws: their derivatives, what they say should be built, and what settings they refuse.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_core::{DesignError, Initial, Law};
 use hwasp_diff::{GradCheckSettings, gradcheck};
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};

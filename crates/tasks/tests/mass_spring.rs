@@ -1,5 +1,7 @@
 //! The physics and the reward against arithmetic by hand and against known returns.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_core::{Environment, Law, Plant, Purpose, stream};
 use hwasp_tasks::mass_spring::{Coupling, Interface, MassSpring, MassSpringPlant, MassSpringSettings};
 

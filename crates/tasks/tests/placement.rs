@@ -3,6 +3,8 @@
 //! The authors' own in-policy and in-action environments differ by up to 0.18 m with the same design and command, because
 //! they limit different forces. Here there is one plant and one law.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use std::sync::{Arc, Mutex};
 
 use hwasp_core::{

@@ -1,5 +1,7 @@
 //! The reach task: arithmetic by hand, and that its best gear is best.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 use hwasp_core::{Environment, Purpose, stream};
 use hwasp_tasks::reach::{Gear, Reach, ReachSettings};
 

@@ -1,8 +1,7 @@
 //! The linear feature baseline (Duan et al. 2016, section 4), as the paper's toolkit has it.
 
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 use hwasp_core::Batch;
+use nalgebra::{DMatrix, DVector};
 
 /// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o the controller's input clipped to ±10 and
 /// a = t/100 the time in the episode.
@@ -69,14 +68,15 @@ impl LinearBaseline {
                 }
             }
         }
-        let right = Mat::from_fn(n, 1, |i, _| right[i]);
+        let right = DVector::from_vec(right);
         let mut ridge = self.ridge;
         for _ in 0..=5 {
-            let matrix = Mat::from_fn(n, n, |i, j| normal[i.max(j) * n + i.min(j)] + if i == j { ridge } else { 0.0 });
-            if let Ok(factor) = matrix.llt(Side::Lower) {
+            let matrix =
+                DMatrix::from_fn(n, n, |i, j| normal[i.max(j) * n + i.min(j)] + if i == j { ridge } else { 0.0 });
+            if let Some(factor) = matrix.cholesky() {
                 let solution = factor.solve(&right);
-                if (0..n).all(|i| solution[(i, 0)].is_finite()) {
-                    self.coefficients = (0..n).map(|i| solution[(i, 0)]).collect();
+                if solution.iter().all(|c| c.is_finite()) {
+                    self.coefficients = solution.as_slice().to_vec();
                     return;
                 }
             }

@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn learns_a_parabola_far_from_zero() {
         let (batch, targets) = batch(400);
-        let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 200, ..MlpBaselineConfig::default() };
+        let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 600, ..MlpBaselineConfig::default() };
         let mut baseline = MlpBaseline::new(config, 1, 0, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let (values, last) = baseline.predict(&batch);

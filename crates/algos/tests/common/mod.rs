@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use hwasp_algos::{BaselineConfig, Learner, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
 use hwasp_core::{
-    Anneal, Environment, EpisodeKind, Episodes, Executor, HardwarePolicy, MakeEnvironment, Noise, Placement,
-    PolicySpec, Sampler, Serial,
+    Environment, EpisodeKind, Episodes, Executor, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec,
+    Sampler, Serial,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::{MassSpring, MassSpringSettings};
@@ -73,9 +73,6 @@ impl Case {
     /// Ten springs; training episodes of 200 steps.
     pub(crate) fn mass_spring(place: Placement) -> Self {
         let problem = MassSpring::stiffness(MassSpringSettings::default()).unwrap();
-        // Designs in the action need the quieter settings.
-        let minimal = place == Placement::Action;
-        let design_anneal = minimal.then_some(Anneal { ratio: 0.1, from: 0.25, to: 0.75 });
         let spec = PolicySpec {
             hidden: vec![32, 32],
             activation: Activation::Tanh,
@@ -84,15 +81,14 @@ impl Case {
             observation_scale: vec![0.1, 0.5],
             law: problem.law(),
             placements: vec![place; problem.settings().count],
-            noise: Noise { design_anneal, ..noise(0.3, 3.0, 0.1) },
+            noise: noise(0.3, 3.0, 0.3),
         };
         let ppo = PpoConfig {
             gae_lambda: 0.98,
-            clip_ratio: if minimal { 0.2 } else { 0.3 },
-            learning_rate_final: 0.02,
+            clip_ratio: 0.3,
             design_lr_scale: 10.0,
             log_std_lr_scale: 0.5,
-            entropy_coef: if minimal { 0.0 } else { 3e-3 },
+            entropy_coef: 3e-3,
             ..PpoConfig::default()
         };
         let settings = PpoSettings { ppo, baseline: BaselineConfig::Mlp(MlpBaselineConfig::default()) };
@@ -123,12 +119,11 @@ impl Case {
         returns.iter().sum::<f64>() / returns.len() as f64
     }
 
-    /// Evaluation before and after training, and the total of the design.
-    pub(crate) fn learn(&self, seed: u64, iterations: u64) -> (f64, f64, f64) {
+    /// Evaluation and the total of the design, before and after training.
+    pub(crate) fn learn(&self, seed: u64, iterations: u64) -> [(f64, f64); 2] {
         let policy = self.sampler.policy();
-        let before = self.evaluate(&policy.init(seed, self.output_gain), 40);
-        let params = self.train(&Serial, seed, iterations);
-        let total = policy.space().totals(&policy.design(&params))[0];
-        (before, self.evaluate(&params, 40), total)
+        let judge = |params: &[f32]| (self.evaluate(params, 40), policy.space().totals(&policy.design(params))[0]);
+        let before = judge(&policy.init(seed, self.output_gain));
+        [before, judge(&self.train(&Serial, seed, iterations))]
     }
 }

@@ -134,7 +134,7 @@ impl Mlp {
             let at = *next;
             *next += (w[0] + 1) * w[1];
             let activation = if l + 1 == count { self.output } else { self.hidden };
-            let narrow = l > 0 && w[1] <= NARROW;
+            let narrow = l > 0 && l + 1 == count && w[1] <= NARROW;
             Some(Layer { inputs: w[0], outputs: w[1], at, activation, narrow })
         })
     }

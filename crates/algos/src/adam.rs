@@ -68,7 +68,14 @@ impl Adam {
 
 /// Scales `gradient` down to `max_norm` if it is longer; returns its norm before.
 pub(crate) fn clip_norm(gradient: &mut [f32], max_norm: Option<f64>) -> f64 {
-    let norm = gradient.iter().map(|&g| f64::from(g) * f64::from(g)).sum::<f64>().sqrt();
+    // Eight sums at once: one alone would wait for every addition.
+    let mut squares = [0.0; 8];
+    for chunk in gradient.chunks(8) {
+        for (sum, &g) in squares.iter_mut().zip(chunk) {
+            *sum += f64::from(g) * f64::from(g);
+        }
+    }
+    let norm = squares.iter().sum::<f64>().sqrt();
     if let Some(limit) = max_norm
         && norm > limit
     {

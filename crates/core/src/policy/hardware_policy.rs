@@ -134,6 +134,18 @@ impl HardwarePolicy {
     }
 }
 
+/// Column `j` of rows of `width` numbers.
+#[inline]
+fn take_column(rows: &[f32], width: usize, j: usize, to: &mut [f32]) {
+    if width == 1 {
+        to.copy_from_slice(&rows[..to.len()]);
+        return;
+    }
+    for (to, from) in to.iter_mut().zip(rows.chunks_exact(width)) {
+        *to = from[j];
+    }
+}
+
 impl PolicyTape {
     /// Lays out the law's columns of a block.
     fn fill_columns(&mut self, policy: &HardwarePolicy, rows: &Rows<'_>) {
@@ -141,9 +153,7 @@ impl PolicyTape {
         let commands = policy.commands.len();
         let (output, width) = self.controller.output();
         for (j, column) in self.columns.chunks_exact_mut(stride).take(commands).enumerate() {
-            for (to, from) in column[..count].iter_mut().zip(output.chunks_exact(width)) {
-                *to = from[j];
-            }
+            take_column(output, width, j, &mut column[..count]);
         }
         let state = self.columns[commands * stride..].chunks_exact_mut(stride).take(policy.state_dim);
         for (s, to) in state.enumerate() {
@@ -238,7 +248,10 @@ impl Policy for HardwarePolicy {
         );
         let commands = self.commands.len();
         let outputs = &mut tape.output_cotangent[..rows.count * commands];
-        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate() {
+        if commands == 1 {
+            outputs.copy_from_slice(&tape.moved_columns[..rows.count]);
+        }
+        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate().filter(|_| commands > 1) {
             for (to, from) in outputs.chunks_exact_mut(commands).zip(column) {
                 to[j] = *from;
             }
@@ -268,9 +281,7 @@ impl Policy for HardwarePolicy {
         let (output, width) = tape.controller.tangent();
         tape.moved_columns.fill(0.0);
         for (j, column) in tape.moved_columns.chunks_exact_mut(stride).take(self.commands.len()).enumerate() {
-            for (to, from) in column[..rows.count].iter_mut().zip(output.chunks_exact(width)) {
-                *to = from[j];
-            }
+            take_column(output, width, j, &mut column[..rows.count]);
         }
         self.composition.program.jvp(
             &tape.columns,

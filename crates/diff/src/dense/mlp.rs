@@ -4,7 +4,7 @@ use pulp::{Simd, WithSimd};
 
 use super::aligned::Aligned;
 use super::kernels::{Onto, product, product_transposed};
-use super::passes::{activate, add_rows, differentiate, dot};
+use super::passes::{activate, add_rows, differentiate, dot, sum_column};
 use crate::Float;
 
 /// What a layer does to its sums.
@@ -352,9 +352,13 @@ impl<F: Float> WithSimd for Backward<'_, F> {
         let (mut current, mut next, rows) = (&mut current[..], &mut next[..], *rows);
         if let Some(last) = layers.last() {
             let outputs = last.layer.outputs;
-            current[..rows * last.stride].fill(F::ZERO);
-            for (to, from) in current.chunks_exact_mut(last.stride).zip(self.cotangent.chunks_exact(outputs)) {
-                to[..outputs].copy_from_slice(from);
+            if last.stride == outputs {
+                current[..rows * outputs].copy_from_slice(&self.cotangent[..rows * outputs]);
+            } else {
+                current[..rows * last.stride].fill(F::ZERO);
+                for (to, from) in current.chunks_exact_mut(last.stride).zip(self.cotangent.chunks_exact(outputs)) {
+                    to[..outputs].copy_from_slice(from);
+                }
             }
         }
         for l in (0..layers.len()).rev() {
@@ -369,10 +373,8 @@ impl<F: Float> WithSimd for Backward<'_, F> {
             differentiate(shape.activation, &t.output[..rows * t.stride], d);
             let sums = &mut t.weights_cotangent;
             if shape.narrow {
-                for row in d.chunks_exact(shape.outputs) {
-                    for j in 0..shape.outputs {
-                        t.bias_cotangent[j] += row[j];
-                    }
+                for j in 0..shape.outputs {
+                    t.bias_cotangent[j] += sum_column(d, shape.outputs, j);
                 }
                 product_transposed::<F, S>(simd, (rows, shape.outputs, x_stride), d, t.stride, x, sums);
                 let size = (rows, shape.outputs, x_stride);

@@ -75,6 +75,28 @@ pub(super) fn dot<F: Float>(x: &[F], y: &[F]) -> F {
     for (l, (&x, &y)) in rest.enumerate() {
         sum[l] = x.mul_add(y, sum[l]);
     }
+    tree(sum)
+}
+
+/// The sum over column `j` of rows of `width` numbers, in a fixed order.
+#[inline(always)]
+pub(super) fn sum_column<F: Float>(x: &[F], width: usize, j: usize) -> F {
+    let mut sum = [F::ZERO; PARALLEL];
+    let rows = x.chunks_exact(PARALLEL * width);
+    for (l, row) in rows.remainder().chunks_exact(width).enumerate() {
+        sum[l] += row[j];
+    }
+    for rows in rows {
+        for l in 0..PARALLEL {
+            sum[l] += rows[l * width + j];
+        }
+    }
+    tree(sum)
+}
+
+/// The sum of the accumulators, by halves.
+#[inline(always)]
+fn tree<F: Float>(mut sum: [F; PARALLEL]) -> F {
     let mut half = PARALLEL / 2;
     while half > 0 {
         for l in 0..half {

@@ -6,7 +6,8 @@ use thiserror::Error;
 /// What an update did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateMetrics {
-    /// Mean KL divergence from the policy before to the policy after, estimated on the batch, nats.
+    /// KL divergence from the policy that acted, nats: the mean over the rows of the last epoch, each taken before its
+    /// gradient step.
     pub kl: f64,
     /// Entropy of the action distribution after the update, nats.
     pub entropy: f64,

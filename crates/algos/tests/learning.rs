@@ -34,7 +34,7 @@ fn springs_in_the_graph_are_learned() {
 }
 
 /// The clip bounds what ten sampled springs can move in an update, so that they take longer: in 200,000 steps six seeds
-/// went to -880 to -599 only, and their springs a fifth to two fifths of their way. This one went to -644 and 41 % of it.
+/// went to -880 to -599 only, and their springs a seventh to two fifths of their way. This one went to -644 and 41 % of it.
 #[test]
 fn springs_in_the_action_are_learned() {
     let [(before, total), (after, trained)] = Case::mass_spring(Placement::Action).learn(3, 50);

@@ -146,6 +146,18 @@ fn take_column(rows: &[f32], width: usize, j: usize, to: &mut [f32]) {
     }
 }
 
+/// Its inverse: writes column `j` of rows of `width` numbers.
+#[inline]
+fn put_column(column: &[f32], width: usize, j: usize, rows: &mut [f32]) {
+    if width == 1 {
+        rows.copy_from_slice(column);
+        return;
+    }
+    for (to, from) in rows.chunks_exact_mut(width).zip(column) {
+        to[j] = *from;
+    }
+}
+
 impl PolicyTape {
     /// Lays out the law's columns of a block.
     fn fill_columns(&mut self, policy: &HardwarePolicy, rows: &Rows<'_>) {
@@ -248,13 +260,8 @@ impl Policy for HardwarePolicy {
         );
         let commands = self.commands.len();
         let outputs = &mut tape.output_cotangent[..rows.count * commands];
-        if commands == 1 {
-            outputs.copy_from_slice(&tape.moved_columns[..rows.count]);
-        }
-        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate().filter(|_| commands > 1) {
-            for (to, from) in outputs.chunks_exact_mut(commands).zip(column) {
-                to[j] = *from;
-            }
+        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate() {
+            put_column(&column[..rows.count], commands, j, outputs);
         }
         self.controller.vjp(rows.obs, outputs, &mut tape.controller);
     }

@@ -98,7 +98,7 @@ fn ppo_step(c: &mut Criterion) {
     let steps = 100;
     let settings = PpoSettings {
         ppo: PpoConfig { epochs: steps, minibatch_rows: 0, ..PpoConfig::default() },
-        baseline: BaselineConfig::Linear { ridge: 1e-5 },
+        baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false },
     };
     let mut group = c.benchmark_group("PPO");
     group.throughput(Throughput::Elements(steps as u64));

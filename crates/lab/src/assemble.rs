@@ -235,7 +235,7 @@ fn learner(spec: &Spec) -> PpoSettings {
             bootstrap_truncated: ppo.bootstrap_truncated,
         },
         baseline: match baseline.kind {
-            BaselineKind::Linear => BaselineConfig::Linear { ridge: baseline.ridge },
+            BaselineKind::Linear => BaselineConfig::Linear { ridge: baseline.ridge, privileged: baseline.privileged },
             BaselineKind::Mlp => BaselineConfig::Mlp(MlpBaselineConfig {
                 hidden: baseline.hidden.clone(),
                 learning_rate: baseline.learning_rate,

@@ -1,37 +1,49 @@
 //! The linear feature baseline (Duan et al. 2016, section 4), as the paper's toolkit has it.
 
-use hwasp_core::Batch;
+use hwasp_core::{Batch, Episode};
 use nalgebra::{DMatrix, DVector};
 
-/// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o the controller's input clipped to ±10 and
-/// a = t/100 the time in the episode.
+/// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o what it sees, clipped to ±10, and a = t/100
+/// the time in the episode. It sees the controller's input, and where it is privileged the law's state beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearBaseline {
     coefficients: Vec<f64>,
     obs_dim: usize,
+    /// How many components of the state it sees: all or none.
+    state_dim: usize,
     ridge: f64,
 }
 
 impl LinearBaseline {
-    /// Zero everywhere until the first fit.
-    pub fn new(obs_dim: usize, ridge: f64) -> Self {
-        Self { coefficients: vec![0.0; 2 * obs_dim + 4], obs_dim, ridge }
+    /// Zero everywhere until the first fit. A `state_dim` of zero makes it see no more than the controller does.
+    pub fn new(obs_dim: usize, state_dim: usize, ridge: f64) -> Self {
+        Self { coefficients: vec![0.0; 2 * (obs_dim + state_dim) + 4], obs_dim, state_dim, ridge }
     }
 
-    fn features(&self, obs: &[f32], time: usize, out: &mut [f64]) {
-        let n = self.obs_dim;
-        for (i, &o) in obs.iter().enumerate() {
-            let o = f64::from(o).clamp(-10.0, 10.0);
-            out[i] = o;
-            out[n + i] = o * o;
+    /// Calls `each` with row and features of every step of the episode, and with those of the state after it.
+    fn visit(
+        &self,
+        batch: &Batch,
+        episode: &Episode,
+        features: &mut [f64],
+        mut each: impl FnMut(Option<usize>, &[f64]),
+    ) {
+        let steps = episode.rows.clone().map(Some).chain([None]);
+        for (time, row) in steps.enumerate() {
+            let (obs, state) = match row {
+                Some(row) => (&batch.obs[row * self.obs_dim..], batch.state.get(row * self.state_dim..).unwrap_or(&[])),
+                None => (&episode.last_obs[..], &episode.last_state[..]),
+            };
+            let seen = obs[..self.obs_dim].iter().chain(&state[..self.state_dim]);
+            let (first, rest) = features.split_at_mut(self.obs_dim + self.state_dim);
+            for ((&o, first), second) in seen.zip(first).zip(&mut *rest) {
+                let o = f64::from(o).clamp(-10.0, 10.0);
+                (*first, *second) = (o, o * o);
+            }
+            let a = time as f64 / 100.0;
+            rest[self.obs_dim + self.state_dim..].copy_from_slice(&[a, a * a, a * a * a, 1.0]);
+            each(row, features);
         }
-        let a = time as f64 / 100.0;
-        out[2 * n..].copy_from_slice(&[a, a * a, a * a * a, 1.0]);
-    }
-
-    fn value(&self, obs: &[f32], time: usize, features: &mut [f64]) -> f32 {
-        self.features(obs, time, features);
-        features.iter().zip(&self.coefficients).map(|(f, c)| f * c).sum::<f64>() as f32
     }
 
     /// V of every row, and of the state after each episode.
@@ -40,11 +52,10 @@ impl LinearBaseline {
         let mut values = Vec::with_capacity(batch.rows());
         let mut last = Vec::with_capacity(batch.episodes.len());
         for episode in &batch.episodes {
-            for (time, row) in episode.rows.clone().enumerate() {
-                let obs = &batch.obs[row * self.obs_dim..][..self.obs_dim];
-                values.push(self.value(obs, time, &mut features));
-            }
-            last.push(self.value(&episode.last_obs, episode.rows.len(), &mut features));
+            self.visit(batch, episode, &mut features, |row, features| {
+                let value = features.iter().zip(&self.coefficients).map(|(f, c)| f * c).sum::<f64>() as f32;
+                if row.is_some() { values.push(value) } else { last.push(value) }
+            });
         }
         (values, last)
     }
@@ -57,16 +68,15 @@ impl LinearBaseline {
         let mut normal = vec![0.0; n * n];
         let mut right = vec![0.0; n];
         for episode in &batch.episodes {
-            for (time, row) in episode.rows.clone().enumerate() {
-                self.features(&batch.obs[row * self.obs_dim..][..self.obs_dim], time, &mut features);
-                let target = f64::from(targets[row]);
+            self.visit(batch, episode, &mut features, |row, features| {
+                let Some(target) = row.map(|row| f64::from(targets[row])) else { return };
                 for i in 0..n {
                     for j in 0..=i {
                         normal[i * n + j] += features[i] * features[j];
                     }
                     right[i] += features[i] * target;
                 }
-            }
+            });
         }
         let right = DVector::from_vec(right);
         let mut ridge = self.ridge;
@@ -88,7 +98,7 @@ impl LinearBaseline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwasp_core::{End, Episode};
+    use hwasp_core::End;
 
     #[test]
     fn recovers_a_function_of_its_features() {
@@ -102,7 +112,7 @@ mod tests {
             episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.25], last_state: vec![] }],
             ..Batch::default()
         };
-        let mut baseline = LinearBaseline::new(1, 1e-5);
+        let mut baseline = LinearBaseline::new(1, 0, 1e-5);
         assert_eq!(baseline.predict(&batch).0, vec![0.0; rows]);
         baseline.fit(&batch, &targets);
         let (values, last) = baseline.predict(&batch);
@@ -110,5 +120,28 @@ mod tests {
             assert!((value - target).abs() < 1e-3, "{value} against {target}");
         }
         assert!((last[0] - truth(0.25, rows)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn sees_the_state_where_it_is_privileged() {
+        let rows = 100;
+        let state: Vec<f32> = (0..rows).map(|i| (i * 29 % 83) as f32 / 41.0).collect();
+        let targets: Vec<f32> = state.iter().map(|s| 2.0 - 3.0 * s * s).collect();
+        let batch = Batch {
+            obs: vec![0.5; rows],
+            state,
+            reward: vec![0.0; rows],
+            episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5], last_state: vec![1.0] }],
+            ..Batch::default()
+        };
+        let error = |state_dim| {
+            let mut baseline = LinearBaseline::new(1, state_dim, 1e-5);
+            baseline.fit(&batch, &targets);
+            let (values, last) = baseline.predict(&batch);
+            let errors = values.iter().zip(&targets).map(|(v, t)| (v - t).abs());
+            errors.fold((last[0] + 1.0).abs(), f32::max)
+        };
+        assert!(error(1) < 1e-3, "{}", error(1));
+        assert!(error(0) > 1.0, "what it does not see it cannot tell: {}", error(0));
     }
 }

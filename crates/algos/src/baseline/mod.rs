@@ -18,6 +18,8 @@ pub enum BaselineConfig {
     Linear {
         /// The ridge.
         ridge: f64,
+        /// Whether it also sees the law's state.
+        privileged: bool,
     },
     /// A perceptron.
     Mlp(MlpBaselineConfig),
@@ -36,7 +38,9 @@ impl Baseline {
     /// A fresh one for observations of `obs_dim` components and a state of `state_dim`.
     pub fn new(config: &BaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
         match config {
-            BaselineConfig::Linear { ridge } => Self::Linear(LinearBaseline::new(obs_dim, *ridge)),
+            BaselineConfig::Linear { ridge, privileged } => {
+                Self::Linear(LinearBaseline::new(obs_dim, if *privileged { state_dim } else { 0 }, *ridge))
+            }
             BaselineConfig::Mlp(config) => {
                 Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, state_dim, seed)))
             }

@@ -114,7 +114,7 @@ fn settings() -> PpoSettings {
         normalize_advantages: false,
         ..PpoConfig::default()
     };
-    PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5 } }
+    PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } }
 }
 
 /// Gradient of w and log σ, KL and clipped rows of one step over the whole batch, and the cotangents of the means.

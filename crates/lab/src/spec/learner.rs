@@ -87,7 +87,7 @@ pub struct PpoSpec {
 /// | `hidden` | [32, 32] | widths of the network's hidden layers | up to 16 of 1 to 4096 |
 /// | `learning_rate` | 1e-3 | Adam's | 1e-9 to 1 |
 /// | `epochs` | 4 | passes over a batch, in PPO's minibatches | 1 to 1000 |
-/// | `privileged` | false | the network also sees the law's state, which the controller does not | |
+/// | `privileged` | false | whether it also sees the law's state, which the controller does not | |
 /// | `ridge` | 1e-5 | regularisation of the linear one | 0 to 1e6 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BaselineSpec {
@@ -99,7 +99,7 @@ pub struct BaselineSpec {
     pub learning_rate: f64,
     /// Passes over a batch.
     pub epochs: usize,
-    /// Whether the network also sees the law's state.
+    /// Whether it also sees the law's state.
     pub privileged: bool,
     /// Regularisation of the linear one.
     pub ridge: f64,

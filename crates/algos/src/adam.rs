@@ -68,14 +68,23 @@ impl Adam {
 
 /// Scales `gradient` down to `max_norm` if it is longer; returns its norm before.
 pub(crate) fn clip_norm(gradient: &mut [f32], max_norm: Option<f64>) -> f64 {
-    // Eight sums at once: one alone would wait for every addition.
-    let mut squares = [0.0; 8];
-    for chunk in gradient.chunks(8) {
-        for (sum, &g) in squares.iter_mut().zip(chunk) {
-            *sum += f64::from(g) * f64::from(g);
-        }
-    }
-    let norm = squares.iter().sum::<f64>().sqrt();
+    let norm = vectorised(
+        #[inline(always)]
+        || {
+            // Sixteen sums at once: one alone would wait for every addition.
+            let mut squares = [0.0; 16];
+            let chunks = gradient.chunks_exact(16);
+            for (sum, &g) in squares.iter_mut().zip(chunks.remainder()) {
+                *sum += f64::from(g) * f64::from(g);
+            }
+            for chunk in chunks {
+                for l in 0..16 {
+                    squares[l] += f64::from(chunk[l]) * f64::from(chunk[l]);
+                }
+            }
+            squares.iter().sum::<f64>().sqrt()
+        },
+    );
     if let Some(limit) = max_norm
         && norm > limit
     {

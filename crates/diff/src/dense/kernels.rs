@@ -223,6 +223,11 @@ fn transposed_columns<F: Float, S: Simd, const N: usize>(
         transposed_tile::<F, S, 4, N>(simd, rows, &a[i..], lda, b, columns, n, &mut c[i * columns..]);
         i += 4;
     }
+    // Narrow inputs come in twos: position and speed.
+    while m - i >= 2 {
+        transposed_tile::<F, S, 2, N>(simd, rows, &a[i..], lda, b, columns, n, &mut c[i * columns..]);
+        i += 2;
+    }
     while i < m {
         transposed_tile::<F, S, 1, N>(simd, rows, &a[i..], lda, b, columns, n, &mut c[i * columns..]);
         i += 1;

@@ -45,19 +45,30 @@ pub(super) fn differentiate<F: Float>(activation: Activation, h: &[F], d: &mut [
 /// `sum[j] += Σ_r x[r][j]` over rows of `sum.len()` numbers, a multiple of eight.
 #[inline(always)]
 pub(super) fn add_rows<F: Float>(x: &[F], sum: &mut [F]) {
+    // The more columns at once, the more additions are under way; each column keeps its order.
     let width = sum.len();
-    let rows = x.len() / width;
-    for (j, sum) in sum.chunks_exact_mut(8).enumerate() {
-        let mut total = [F::ZERO; 8];
-        for r in 0..rows {
-            let row = &x[r * width + 8 * j..][..8];
-            for l in 0..8 {
-                total[l] += row[l];
-            }
+    let mut j = 0;
+    while width - j >= 32 {
+        add_columns::<F, 32>(x, width, j, &mut sum[j..]);
+        j += 32;
+    }
+    while j < width {
+        add_columns::<F, 8>(x, width, j, &mut sum[j..]);
+        j += 8;
+    }
+}
+
+#[inline(always)]
+fn add_columns<F: Float, const N: usize>(x: &[F], width: usize, j: usize, sum: &mut [F]) {
+    let mut total = [F::ZERO; N];
+    for row in x.chunks_exact(width) {
+        let row = &row[j..][..N];
+        for l in 0..N {
+            total[l] += row[l];
         }
-        for l in 0..8 {
-            sum[l] += total[l];
-        }
+    }
+    for l in 0..N {
+        sum[l] += total[l];
     }
 }
 

@@ -6,9 +6,11 @@ mod gae;
 mod learner;
 mod minibatch;
 mod ppo;
+mod search;
 
 pub use adam::{Adam, AdamConfig};
 pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig};
 pub use gae::{Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
+pub use search::{Search, SearchError};

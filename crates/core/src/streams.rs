@@ -31,6 +31,8 @@ pub enum Purpose {
     EvaluationNoise = 8,
     /// Environment checks.
     Check = 9,
+    /// Candidates of a search: the iteration is the generation, the episode the candidate.
+    Search = 10,
 }
 
 /// The stream of this name.

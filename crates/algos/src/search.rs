@@ -1,0 +1,63 @@
+//! Searches without gradients: ask for candidates, tell their scores. They see vectors and numbers, never an environment.
+
+use thiserror::Error;
+
+/// Ask and tell; scores are returns, more is better.
+///
+/// Candidates are drawn from streams named by (seed, generation, candidate), so that what [`ask`](Self::ask) gives depends
+/// on the state alone: asked twice, before and after a save, it gives the same.
+pub trait Search {
+    /// The length of a candidate.
+    fn dimension(&self) -> usize;
+
+    /// The candidates of the generation at hand.
+    fn ask(&mut self) -> Vec<Vec<f64>>;
+
+    /// Takes the scores of the asked candidates, in their order, and goes on to the next generation. A candidate that
+    /// failed has the score `f64::NEG_INFINITY` (or NaN, which counts as that) and ranks last.
+    ///
+    /// # Errors
+    /// Where there are not as many scores as candidates, or none of them is a number: the state is then as it was.
+    fn tell(&mut self, scores: &[f64]) -> Result<(), SearchError>;
+
+    /// The candidate that the search takes for best: the mean of its distribution.
+    fn center(&self) -> Vec<f64>;
+
+    /// Generations told so far.
+    fn generation(&self) -> u64;
+
+    /// Which episodes a candidate is scored on: those of one group share their start states and noise (common random
+    /// numbers), so that their difference is theirs.
+    fn group(&self, candidate: usize) -> u64;
+}
+
+/// Why a search cannot begin or go on.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SearchError {
+    /// Not one score per candidate.
+    #[error("{found} scores for {expected} candidates")]
+    Scores {
+        /// Scores given.
+        found: usize,
+        /// Candidates asked.
+        expected: usize,
+    },
+    /// No candidate of a generation has a finite score.
+    #[error("all {candidates} candidates of generation {generation} failed")]
+    AllFailed {
+        /// Candidates.
+        candidates: usize,
+        /// The generation.
+        generation: u64,
+    },
+    /// A setting that describes no search.
+    #[error("{name} = {value} is not {limits}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is possible.
+        limits: &'static str,
+    },
+}

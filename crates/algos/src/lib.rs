@@ -13,4 +13,4 @@ pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBas
 pub use gae::{Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
-pub use search::{Search, SearchError};
+pub use search::{Ars, ArsConfig, ArsState, Search, SearchError, StateFilter};

@@ -1,5 +1,11 @@
 //! Searches without gradients: ask for candidates, tell their scores. They see vectors and numbers, never an environment.
 
+mod ars;
+mod filter;
+
+pub use ars::{Ars, ArsConfig, ArsState};
+pub use filter::StateFilter;
+
 use thiserror::Error;
 
 /// Ask and tell; scores are returns, more is better.
@@ -60,4 +66,16 @@ pub enum SearchError {
         /// What is possible.
         limits: &'static str,
     },
+}
+
+/// Scores with every failure as negative infinity; an error where they are too few or too many, or all failed.
+fn failed_last(scores: &[f64], expected: usize, generation: u64) -> Result<Vec<f64>, SearchError> {
+    if scores.len() != expected {
+        return Err(SearchError::Scores { found: scores.len(), expected });
+    }
+    let scores: Vec<f64> = scores.iter().map(|&s| if s.is_finite() { s } else { f64::NEG_INFINITY }).collect();
+    if scores.iter().all(|s| !s.is_finite()) {
+        return Err(SearchError::AllFailed { candidates: expected, generation });
+    }
+    Ok(scores)
 }

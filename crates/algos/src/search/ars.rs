@@ -1,0 +1,225 @@
+//! Augmented random search (Mania, Guy and Recht, "Simple random search provides a competitive approach to reinforcement
+//! learning", 2018).
+
+use hwasp_core::{Purpose, stream};
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+use super::{Search, SearchError, failed_last};
+
+/// Settings of [`Ars`]: V1 with all directions, V1-t with the best of them. V2 and V2-t are the same search with a
+/// [`StateFilter`](super::StateFilter) before the controller.
+///
+/// | name | symbol | default | purpose |
+/// |---|---|---|---|
+/// | `directions` | N | 32 | directions tried per generation, each both ways |
+/// | `top` | b | 16 | the best of them, which count; N for V1 and V2 |
+/// | `step_size` | α | 0.05 | length of a step, in units of the scores' standard deviation |
+/// | `noise_std` | ν | 0.1 | how far candidates are from the centre, per parameter |
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArsConfig {
+    /// Directions tried per generation, N.
+    pub directions: usize,
+    /// The best of them, which count, b.
+    pub top: usize,
+    /// Length of a step, α.
+    pub step_size: f64,
+    /// How far candidates are from the centre, ν.
+    pub noise_std: f64,
+}
+
+impl Default for ArsConfig {
+    fn default() -> Self {
+        Self { directions: 32, top: 16, step_size: 0.05, noise_std: 0.1 }
+    }
+}
+
+/// Random search along the best of N antithetic directions (algorithm 1). Candidates 2i and 2i + 1 are centre ± ν·δᵢ and
+/// share their episodes. The directions are not kept: their streams give them again.
+#[derive(Clone, Debug)]
+pub struct Ars {
+    config: ArsConfig,
+    seed: u64,
+    state: ArsState,
+}
+
+/// What an [`Ars`] has to save.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArsState {
+    /// The parameters, M.
+    pub center: Vec<f64>,
+    /// Generations told.
+    pub generation: u64,
+}
+
+impl Ars {
+    /// Starts from `center`; `seed` names the streams.
+    pub fn new(config: ArsConfig, center: Vec<f64>, seed: u64) -> Result<Self, SearchError> {
+        Self::resume(config, ArsState { center, generation: 0 }, seed)
+    }
+
+    /// Continues from a saved state, with the settings and the seed that it had.
+    pub fn resume(config: ArsConfig, state: ArsState, seed: u64) -> Result<Self, SearchError> {
+        let whole = |name, value: usize, sound, limits| {
+            if sound { Ok(()) } else { Err(SearchError::Setting { name, value: value as f64, limits }) }
+        };
+        whole("directions", config.directions, config.directions > 0, "at least 1")?;
+        let top = (1..=config.directions).contains(&config.top);
+        whole("top", config.top, top, "between 1 and the number of directions")?;
+        for (name, value) in [("step_size", config.step_size), ("noise_std", config.noise_std)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(SearchError::Setting { name, value, limits: "a positive finite number" });
+            }
+        }
+        Ok(Self { config, seed, state })
+    }
+
+    /// What to save.
+    pub fn state(&self) -> &ArsState {
+        &self.state
+    }
+
+    /// δ of a direction of this generation.
+    fn direction(&self, i: usize) -> impl Iterator<Item = f64> + use<> {
+        let mut stream = stream(self.seed, Purpose::Search, self.state.generation, i as u64);
+        (0..self.state.center.len()).map(move |_| StandardNormal.sample(&mut stream))
+    }
+}
+
+impl Search for Ars {
+    fn dimension(&self) -> usize {
+        self.state.center.len()
+    }
+
+    fn ask(&mut self) -> Vec<Vec<f64>> {
+        let moved = |i, step: f64| self.state.center.iter().zip(self.direction(i)).map(|(m, d)| m + step * d).collect();
+        let noise = self.config.noise_std;
+        (0..self.config.directions).flat_map(|i| [moved(i, noise), moved(i, -noise)]).collect()
+    }
+
+    /// Algorithm 1, lines 6 and 7. A direction of which one way failed says nothing and is left out; so are all where the
+    /// scores do not differ.
+    fn tell(&mut self, scores: &[f64]) -> Result<(), SearchError> {
+        let scores = failed_last(scores, 2 * self.config.directions, self.state.generation)?;
+        let mut pairs: Vec<(usize, f64, f64)> =
+            scores.chunks_exact(2).enumerate().map(|(i, pair)| (i, pair[0], pair[1])).collect();
+        pairs.retain(|(_, plus, minus)| plus.is_finite() && minus.is_finite());
+        // A stable sort: equal directions keep their order.
+        pairs.sort_by(|a, b| b.1.max(b.2).total_cmp(&a.1.max(a.2)));
+        pairs.truncate(self.config.top);
+        let kept = || pairs.iter().flat_map(|&(_, plus, minus)| [plus, minus]);
+        let count = (2 * pairs.len()).max(1) as f64;
+        let mean = kept().sum::<f64>() / count;
+        let std = (kept().map(|r| (r - mean).powi(2)).sum::<f64>() / count).sqrt();
+        if std > 0.0 {
+            let step = self.config.step_size / (pairs.len() as f64 * std);
+            let mut center = self.state.center.clone();
+            for &(i, plus, minus) in &pairs {
+                for (m, d) in center.iter_mut().zip(self.direction(i)) {
+                    *m += step * (plus - minus) * d;
+                }
+            }
+            self.state.center = center;
+        }
+        self.state.generation += 1;
+        Ok(())
+    }
+
+    fn center(&self) -> Vec<f64> {
+        self.state.center.clone()
+    }
+
+    fn generation(&self) -> u64 {
+        self.state.generation
+    }
+
+    fn group(&self, candidate: usize) -> u64 {
+        candidate as u64 / 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn search(config: ArsConfig) -> Ars {
+        Ars::new(config, vec![1.0, -2.0, 0.5], 7).unwrap()
+    }
+
+    /// -|x|², whose best is the origin.
+    fn scores(candidates: &[Vec<f64>]) -> Vec<f64> {
+        candidates.iter().map(|x| -x.iter().map(|x| x * x).sum::<f64>()).collect()
+    }
+
+    /// Two directions, one kept: M + α/(b·σ)·(r⁺ - r⁻)·δ with b = 1 and σ the deviation of r⁺ and r⁻, |r⁺ - r⁻|/2, so that
+    /// the step is 2·α·δ towards the better of the two.
+    #[test]
+    fn one_update_by_hand() {
+        let config = ArsConfig { directions: 2, top: 1, step_size: 0.3, noise_std: 0.1 };
+        let mut ars = search(config);
+        let asked = ars.ask();
+        let delta: Vec<f64> = (0..3).map(|j| (asked[2][j] - asked[3][j]) / 0.2).collect();
+        for j in 0..3 {
+            let middle = 0.5 * (asked[0][j] + asked[1][j]);
+            assert!((middle - [1.0, -2.0, 0.5][j]).abs() < 1e-12, "candidates of a pair are opposite");
+        }
+        // The second direction has the best score, on its minus side.
+        ars.tell(&[3.0, 4.0, 1.0, 9.0]).unwrap();
+        for j in 0..3 {
+            let wanted = [1.0, -2.0, 0.5][j] - 2.0 * 0.3 * delta[j];
+            assert!((ars.center()[j] - wanted).abs() < 1e-12, "{} is not {wanted}", ars.center()[j]);
+        }
+        assert_eq!((ars.group(0), ars.group(1), ars.group(2)), (0, 0, 1));
+    }
+
+    #[test]
+    fn finds_the_best_of_a_quadratic() {
+        let mut ars = search(ArsConfig { step_size: 0.02, noise_std: 0.02, ..ArsConfig::default() });
+        for _ in 0..300 {
+            let asked = ars.ask();
+            ars.tell(&scores(&asked)).unwrap();
+        }
+        assert!(ars.center().iter().all(|x| x.abs() < 0.05), "{:?}", ars.center());
+    }
+
+    #[test]
+    fn a_search_saved_between_ask_and_tell_goes_on_with_the_same_bits() {
+        let mut whole = search(ArsConfig::default());
+        let mut parts = whole.clone();
+        for _ in 0..3 {
+            let asked = whole.ask();
+            whole.tell(&scores(&asked)).unwrap();
+            let asked = parts.ask();
+            let saved: ArsState = parts.state().clone();
+            parts = Ars::resume(ArsConfig::default(), saved, 7).unwrap();
+            assert_eq!(parts.ask(), asked);
+            parts.tell(&scores(&asked)).unwrap();
+        }
+        assert_eq!(whole.state(), parts.state());
+    }
+
+    /// A direction with a failed side is as if it had never been tried.
+    #[test]
+    fn failed_candidates_have_no_say() {
+        let config = ArsConfig { directions: 3, top: 3, ..ArsConfig::default() };
+        let told = |failed: f64, beside: f64| {
+            let mut ars = search(config);
+            ars.tell(&[1.0, 2.0, failed, beside, 4.0, 3.0]).unwrap();
+            ars.center()
+        };
+        assert_eq!(told(f64::NAN, 5.0), told(f64::NEG_INFINITY, -90.0));
+        let mut ars = search(config);
+        let before = ars.state().clone();
+        assert!(matches!(ars.tell(&[f64::NAN; 6]), Err(SearchError::AllFailed { candidates: 6, generation: 0 })));
+        assert!(matches!(ars.tell(&[0.0; 5]), Err(SearchError::Scores { found: 5, expected: 6 })));
+        assert_eq!(*ars.state(), before);
+    }
+
+    #[test]
+    fn settings_that_describe_no_search() {
+        let refused = |config| Ars::new(config, vec![0.0], 1).unwrap_err().to_string();
+        let base = ArsConfig::default();
+        assert_eq!(refused(ArsConfig { top: 33, ..base }), "top = 33 is not between 1 and the number of directions");
+        assert_eq!(refused(ArsConfig { noise_std: 0.0, ..base }), "noise_std = 0 is not a positive finite number");
+    }
+}

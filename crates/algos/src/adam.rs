@@ -118,6 +118,8 @@ mod tests {
         let mut g = [3.0, 4.0];
         assert_eq!(clip_norm(&mut g, Some(1.0)), 5.0);
         assert!((g[0] - 0.6).abs() < 1e-6 && (g[1] - 0.8).abs() < 1e-6);
+        clip_norm(&mut g, Some(0.5));
+        assert!((g[0] - 0.3).abs() < 1e-6 && (g[1] - 0.4).abs() < 1e-6);
         assert_eq!(clip_norm(&mut [3.0, 4.0], None), 5.0);
     }
 }

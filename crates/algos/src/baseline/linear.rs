@@ -122,6 +122,30 @@ mod tests {
         assert!((last[0] - truth(0.25, rows)).abs() < 1e-3);
     }
 
+    /// Under a ridge λ that dwarfs all features x, the coefficients are Σ target·x/λ: features can be told from predictions.
+    /// Here λ is the target, so that they are Σ x. Rows at times 0 and 1 see 20, clipped to 10, and -1; the state after
+    /// them 0.5, at time 2.
+    #[test]
+    fn features_by_hand() {
+        let batch = Batch {
+            obs: vec![20.0, -1.0],
+            reward: vec![0.0; 2],
+            episodes: vec![Episode { rows: 0..2, end: End::Truncated, last_obs: vec![0.5], last_state: vec![] }],
+            ..Batch::default()
+        };
+        let features = |o: f64, a: f64| [o, o * o, a, a * a, a * a * a, 1.0];
+        let (first, second, last) = (features(10.0, 0.0), features(-1.0, 0.01), features(0.5, 0.02));
+        let wanted: f64 = (0..6).map(|i| (first[i] + second[i]) * last[i]).sum();
+        let mut baseline = LinearBaseline::new(1, 0, 1e12);
+        baseline.fit(&batch, &[1e12, 1e12]);
+        assert!((f64::from(baseline.predict(&batch).1[0]) - wanted).abs() < 1e-5 * wanted);
+        // The share of the time: 0.01·0.02, far below the rest.
+        let mut early = baseline.clone();
+        early.coefficients[..2].fill(0.0);
+        early.coefficients[5] = 0.0;
+        assert!((f64::from(early.predict(&batch).1[0]) - 2e-4).abs() < 1e-6);
+    }
+
     #[test]
     fn sees_the_state_where_it_is_privileged() {
         let rows = 100;

@@ -199,6 +199,14 @@ fn negative_advantages_are_clipped_below() {
     check_against_loss(&batch);
 }
 
+/// The bounds are where they should be: of 1.21, 1.19 and 0.79 with advantages 1, 1 and -1 the outer two are clipped; of
+/// 0.79, 1.21 and 0.81 with 1, -1 and -1 none is.
+#[test]
+fn the_clip_acts_at_its_bounds() {
+    assert_eq!(differentiate(&batch([1.21, 1.19, 0.79], [1.0, 1.0, -1.0])).1.clipped, 2.0);
+    assert_eq!(differentiate(&batch([0.79, 1.21, 0.81], [1.0, -1.0, -1.0])).1.clipped, 0.0);
+}
+
 /// The first step of Adam without epsilon is the learning rate against the sign of the gradient: w has ten times 0.01 of
 /// it, log σ half.
 #[test]
@@ -273,5 +281,25 @@ fn numbers_that_are_none_change_nothing() {
         assert_eq!(ppo.params(), before);
     }
     assert_eq!(ppo.update(&first(), 0.0, 1).unwrap(), twin.update(&first(), 0.0, 1).unwrap());
+    assert_eq!(ppo.params(), twin.params());
+}
+
+/// The same where minibatches before the bad one have moved parameters and optimiser.
+#[test]
+fn an_update_that_fails_half_way_is_undone() {
+    let mut settings = settings();
+    settings.ppo.minibatch_rows = 1;
+    let mut bad = first();
+    bad.action[1] = f32::NAN;
+    let mut twin = Ppo::new(&settings, Line::new(), params(), 0);
+    let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+    // In some of the orders the bad row is not the first.
+    for iteration in 0..8 {
+        ppo.update(&bad, 0.0, iteration).unwrap_err();
+    }
+    for iteration in 0..2 {
+        twin.update(&first(), 0.0, iteration).unwrap();
+        ppo.update(&first(), 0.0, iteration).unwrap();
+    }
     assert_eq!(ppo.params(), twin.params());
 }

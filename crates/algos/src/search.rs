@@ -1,6 +1,10 @@
 //! Searches without gradients: ask for candidates, tell their scores. They see vectors and numbers, never an environment.
 
+mod cmaes;
+
 use thiserror::Error;
+
+pub use cmaes::{Cmaes, CmaesConfig, CmaesState, Scored, Stop};
 
 /// Ask and tell; scores are returns, more is better.
 ///
@@ -47,6 +51,12 @@ pub enum SearchError {
     AllFailed {
         /// Candidates.
         candidates: usize,
+        /// The generation.
+        generation: u64,
+    },
+    /// The distribution went beyond what numbers hold; the state before it was kept.
+    #[error("the distribution of generation {generation} has no bounds")]
+    Diverged {
         /// The generation.
         generation: u64,
     },

@@ -1,4 +1,4 @@
-//! Learners: generalised advantages, value baselines, PPO. They see policies and batches, never an environment.
+//! Learners: generalised advantages, value baselines, PPO; searches without gradients: CMA-ES. They see policies and batches, never an environment.
 
 mod adam;
 mod baseline;
@@ -13,4 +13,6 @@ pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBas
 pub use gae::{Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
-pub use search::{Ars, ArsConfig, ArsState, Search, SearchError, StateFilter};
+pub use search::{
+    Ars, ArsConfig, ArsState, Cmaes, CmaesConfig, CmaesState, Scored, Search, SearchError, StateFilter, Stop,
+};

@@ -1,9 +1,11 @@
 //! Searches without gradients: ask for candidates, tell their scores. They see vectors and numbers, never an environment.
 
 mod ars;
+mod cmaes;
 mod filter;
 
 pub use ars::{Ars, ArsConfig, ArsState};
+pub use cmaes::{Cmaes, CmaesConfig, CmaesState, Scored, Stop};
 pub use filter::StateFilter;
 
 use thiserror::Error;
@@ -35,6 +37,11 @@ pub trait Search {
     /// Which episodes a candidate is scored on: those of one group share their start states and noise (common random
     /// numbers), so that their difference is theirs.
     fn group(&self, candidate: usize) -> u64;
+
+    /// Why further generations would gain nothing; `None` while they may.
+    fn stopped(&self) -> Option<Stop> {
+        None
+    }
 }
 
 /// Why a search cannot begin or go on.
@@ -53,6 +60,12 @@ pub enum SearchError {
     AllFailed {
         /// Candidates.
         candidates: usize,
+        /// The generation.
+        generation: u64,
+    },
+    /// The distribution went beyond what numbers hold; the state before it was kept.
+    #[error("the distribution of generation {generation} has no bounds")]
+    Diverged {
         /// The generation.
         generation: u64,
     },

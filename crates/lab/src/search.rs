@@ -1,0 +1,298 @@
+//! Methods that search: over controller and design at once, or over the design with a training inside.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use hwasp_algos::{Ars, ArsConfig, Search, SearchError, StateFilter};
+use hwasp_core::{EpisodeKind, Episodes, Policy, Purpose, Sampler, Serial, stream};
+use rand::RngExt;
+
+use crate::assemble::{AssembleError, Assembly};
+use crate::spec::{Method, Score};
+use crate::train::{Learned, Loop, TrainError, gradient, mean_returns};
+
+/// Episodes on which the last centre and the best candidate are compared: a candidate that was best of many on few
+/// episodes was lucky, too.
+const FINAL_EPISODES: usize = 16;
+
+/// One candidate, scored.
+struct Scored {
+    /// The parameters that acted: of the whole policy.
+    params: Vec<f32>,
+    /// Mean discounted and undiscounted return, and steps taken; none of the returns where it failed.
+    returns: Option<(f64, f64)>,
+    env_steps: u64,
+    /// What the controller saw, where a filter wants to know.
+    seen: Vec<f32>,
+}
+
+/// What is searched and how a candidate is scored.
+struct Problem<'a> {
+    assembly: &'a Assembly,
+    sampler: Sampler,
+    /// The controller's part of the start, for what a search over the design does not move.
+    start: Vec<f32>,
+    filter: Option<StateFilter>,
+}
+
+/// Searches until the budget does not hold another generation, or until `stop` is set.
+pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned, TrainError> {
+    let spec = assembly.spec();
+    let start = assembly.init();
+    let filter =
+        (spec.method == Method::Ars && spec.ars.variant.filters()).then(|| StateFilter::new(assembly.policy.obs_dim()));
+    let sampler =
+        Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
+    let mut problem = Problem { assembly, sampler, start, filter };
+    let mut search = problem.searcher()?;
+    let mut learned = Learned::new(problem.start.clone());
+    let mut best: Option<(f64, Vec<f32>)> = None;
+    loop {
+        let candidates = search.ask();
+        let cost = candidates.len() as u64 * assembly.candidate_steps() + assembly.final_steps();
+        if learned.env_steps + cost > spec.train.env_steps || run.stop.load(Ordering::Relaxed) {
+            break;
+        }
+        let (generation, stop) = (search.generation(), run.stop);
+        let groups: Vec<u64> = (0..candidates.len()).map(|i| search.group(i)).collect();
+        let scored = run.executor.map(candidates.len(), |i| problem.score(&candidates[i], generation, groups[i], stop));
+        let scored = scored.into_iter().collect::<Result<Vec<_>, _>>()?;
+        learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
+        if run.stop.load(Ordering::Relaxed) && spec.method.trains_inside() {
+            // Trainings that were cut short say nothing of their designs.
+            break;
+        }
+        if let Some(filter) = &mut problem.filter {
+            scored.iter().for_each(|s| filter.update(&s.seen));
+        }
+        let scores: Vec<f64> =
+            scored.iter().map(|s| s.returns.map_or(f64::NEG_INFINITY, |r| problem.pick(r))).collect();
+        search.tell(&scores)?;
+        let sound: Vec<(f64, f64)> = scored.iter().filter_map(|s| s.returns).collect();
+        learned.failed_candidates += (scored.len() - sound.len()) as u64;
+        for (candidate, score) in scored.into_iter().zip(scores) {
+            if best.as_ref().is_none_or(|(most, _)| score > *most) {
+                best = Some((score, candidate.params));
+            }
+        }
+        let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
+        let totals = assembly.policy.space().totals(&assembly.policy.design(&problem.params(&search.center())));
+        // There is no policy whose change or spread could be told.
+        learned.tell((mean(|r| r.0), mean(|r| r.1)), (f64::NAN, f64::NAN), totals, run)?;
+    }
+    learned.params = match best {
+        Some((_, best)) if spec.method.trains_inside() => best,
+        Some((_, best)) => problem.final_choice(&mut learned, search.as_ref(), best),
+        None => problem.start,
+    };
+    Ok(learned)
+}
+
+impl Problem<'_> {
+    fn searcher(&self) -> Result<Box<dyn Search>, SearchError> {
+        let spec = self.assembly.spec();
+        let (cmaes, ars) = (&spec.cmaes, &spec.ars);
+        let start = self.coordinates();
+        // Fractions of ranges have limits.
+        let limits = |at: f64| spec.method.trains_inside().then(|| vec![at; start.len()]);
+        match spec.method {
+            Method::Ars | Method::ArsRl => {
+                let config = ArsConfig {
+                    directions: ars.directions,
+                    top: ars.top,
+                    step_size: ars.step_size,
+                    noise_std: ars.noise_std,
+                };
+                Ok(Box::new(Ars::new(config, start, spec.seed)?))
+            }
+            _ => {
+                let config = CmaesConfig {
+                    sigma: cmaes.sigma,
+                    popsize: (cmaes.popsize > 0).then_some(cmaes.popsize),
+                    lower: limits(0.0),
+                    upper: limits(1.0),
+                    restarts: cmaes.restarts as u32,
+                    separable: cmaes.separable,
+                    active: cmaes.active,
+                };
+                Ok(Box::new(Cmaes::new(config, start, spec.seed)?))
+            }
+        }
+    }
+
+    /// The start as the search sees it: all parameters, or the design as fractions of its ranges.
+    fn coordinates(&self) -> Vec<f64> {
+        let policy = &self.assembly.policy;
+        if !self.assembly.spec().method.trains_inside() {
+            return self.start.iter().map(|&p| f64::from(p)).collect();
+        }
+        let design = policy.design(&self.start);
+        let fraction = |&i: &usize| {
+            let (lo, hi) = policy.space().bounds(i);
+            (design[i] - lo) / (hi - lo)
+        };
+        policy.free_design().iter().map(fraction).collect()
+    }
+
+    /// A candidate as parameters of the policy, without a filter.
+    fn params(&self, candidate: &[f64]) -> Vec<f32> {
+        if !self.assembly.spec().method.trains_inside() {
+            return candidate.iter().map(|&x| x as f32).collect();
+        }
+        let policy = &self.assembly.policy;
+        let mut params = self.start.clone();
+        let at = policy.design_params().start;
+        for (k, (&i, &x)) in policy.free_design().iter().zip(candidate).enumerate() {
+            let (lo, hi) = policy.space().bounds(i);
+            params[at + k] = policy.space().unsquash(i, lo + x * (hi - lo)) as f32;
+        }
+        params
+    }
+
+    /// The parameters that act for a candidate.
+    fn acting(&self, candidate: &[f64]) -> Vec<f32> {
+        let mut params = self.params(candidate);
+        if let Some(filter) = &self.filter {
+            filter.fold(&mut params, self.assembly.policy.controller().sizes()[1]);
+        }
+        params
+    }
+
+    fn pick(&self, (discounted, undiscounted): (f64, f64)) -> f64 {
+        match self.assembly.spec().search.score {
+            Score::Return => undiscounted,
+            Score::DiscountedReturn => discounted,
+        }
+    }
+
+    fn score(&self, candidate: &[f64], generation: u64, group: u64, stop: &AtomicBool) -> Result<Scored, TrainError> {
+        let params = self.acting(candidate);
+        if self.assembly.spec().method.trains_inside() {
+            return self.train_inside(params, generation, stop);
+        }
+        let episodes = self.assembly.spec().search.episodes as u64;
+        Ok(self.run(params, generation, group * episodes..(group + 1) * episodes))
+    }
+
+    /// Runs episodes. One that fails fails its candidate, which is charged all of its steps.
+    fn run(&self, params: Vec<f32>, iteration: u64, indices: std::ops::Range<u64>) -> Scored {
+        let spec = self.assembly.spec();
+        let kind = if spec.search.noise { EpisodeKind::Training } else { EpisodeKind::Deterministic };
+        let count = indices.end - indices.start;
+        let asked = Episodes { seed: spec.seed, iteration, indices, progress: 0.0, kind };
+        match self.sampler.collect(&Serial, &params, &asked) {
+            Ok(batch) => Scored {
+                params,
+                returns: Some(mean_returns(&batch, spec.ppo.discount)),
+                env_steps: batch.rows() as u64,
+                seen: if self.filter.is_some() { batch.obs } else { Vec::new() },
+            },
+            Err(_) => {
+                let env_steps = count * spec.train.episode_steps as u64;
+                Scored { params, returns: None, env_steps, seen: Vec::new() }
+            }
+        }
+    }
+
+    /// Trains a controller of its own for a candidate's design. All candidates of a generation begin with the same weights
+    /// and see the same random numbers.
+    fn train_inside(&self, mut params: Vec<f32>, generation: u64, stop: &AtomicBool) -> Result<Scored, TrainError> {
+        let policy = &self.assembly.policy;
+        // TOML holds no seed beyond 2^63.
+        let seed = stream(self.assembly.spec().seed, Purpose::InnerSeed, generation, 0).random::<u64>() >> 1;
+        let env_steps = self.assembly.spec().search.inner_env_steps;
+        let inner = self.assembly.frozen(&policy.design(&params), seed, env_steps)?;
+        let mut run = Loop { executor: &Serial, observer: &mut (), stop, began: Instant::now() };
+        match gradient(&inner, &mut run) {
+            Ok(learned) => {
+                let controller = inner.policy.controller_params(&learned.params);
+                params[..controller.len()].copy_from_slice(controller);
+                let returns = learned.trailing();
+                Ok(Scored { params, returns: Some(returns), env_steps: learned.env_steps, seen: Vec::new() })
+            }
+            Err(TrainError::Rollout(_) | TrainError::Learn(_)) => {
+                Ok(Scored { params, returns: None, env_steps, seen: Vec::new() })
+            }
+            Err(other) => Err(other),
+        }
+    }
+
+    /// The better of the last centre and the best candidate, on the same fresh episodes.
+    fn final_choice(&self, learned: &mut Learned, search: &dyn Search, best: Vec<f32>) -> Vec<f32> {
+        let both = [self.acting(&search.center()), best];
+        let scored = both.map(|params| self.run(params, search.generation(), 0..FINAL_EPISODES as u64));
+        learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
+        let [center, best] = scored;
+        let score = |s: &Scored| s.returns.map_or(f64::NEG_INFINITY, |r| self.pick(r));
+        if score(&best) > score(&center) { best.params } else { center.params }
+    }
+}
+
+impl Assembly {
+    /// Real simulator steps that one candidate of a search costs, at most.
+    pub(crate) fn candidate_steps(&self) -> u64 {
+        let spec = self.spec();
+        if spec.method.trains_inside() {
+            // A training ends with a whole iteration.
+            return spec.search.inner_env_steps.next_multiple_of(spec.train.rows() as u64);
+        }
+        spec.search.episodes as u64 * spec.train.episode_steps as u64
+    }
+
+    /// What the choice at the end of a search costs, at most.
+    pub(crate) fn final_steps(&self) -> u64 {
+        let spec = self.spec();
+        if spec.method.trains_inside() { 0 } else { 2 * FINAL_EPISODES as u64 * spec.train.episode_steps as u64 }
+    }
+
+    /// Candidates of a generation of the method's search, and the steps of each at most; none where it does not search.
+    pub fn generation(&self) -> Option<(usize, u64)> {
+        let spec = self.spec();
+        let dimension =
+            if spec.method.trains_inside() { self.policy.free_design().len() } else { self.policy.param_count() };
+        let popsize = match spec.method {
+            Method::Ars | Method::ArsRl => 2 * spec.ars.directions,
+            Method::Cmaes | Method::CmaesRl if spec.cmaes.popsize > 0 => spec.cmaes.popsize,
+            Method::Cmaes | Method::CmaesRl => CmaesConfig::default_popsize(dimension),
+            Method::Hwasp | Method::Minimal | Method::Fixed => return None,
+        };
+        Some((popsize, self.candidate_steps()))
+    }
+
+    /// Refuses a search whose budget does not hold one generation.
+    pub(crate) fn check_budget(&self) -> Result<(), AssembleError> {
+        let Some((popsize, each)) = self.generation() else { return Ok(()) };
+        if self.spec().method.trains_inside() && self.policy.free_design().is_empty() {
+            return Err(AssembleError::NothingToSearch { method: self.spec().method.name() });
+        }
+        let given = self.spec().train.env_steps;
+        let needed = popsize as u64 * each + self.final_steps();
+        if given < needed {
+            return Err(AssembleError::Budget { given, needed, popsize, each });
+        }
+        Ok(())
+    }
+}
+
+// SHIM
+struct CmaesConfig {
+    sigma: f64,
+    popsize: Option<usize>,
+    lower: Option<Vec<f64>>,
+    upper: Option<Vec<f64>>,
+    restarts: u32,
+    separable: bool,
+    active: bool,
+}
+impl CmaesConfig {
+    fn default_popsize(n: usize) -> usize {
+        4 + (3.0 * (n as f64).ln()) as usize
+    }
+}
+struct Cmaes;
+impl Cmaes {
+    fn new(c: CmaesConfig, _s: Vec<f64>, _seed: u64) -> Result<Ars, SearchError> {
+        let _ = (c.sigma, c.popsize, c.lower, c.upper, c.restarts, c.separable, c.active);
+        Err(SearchError::AllFailed { candidates: 0, generation: 0 })
+    }
+}

@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use hwasp_lab::plot::XAxis;
+use hwasp_lab::spec::Method;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -51,23 +53,35 @@ pub(crate) enum Command {
     Graph(GraphArgs),
 }
 
-/// How the design is placed.
+/// How learner, controller and hardware are composed.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum MethodArg {
-    /// The law in the policy's graph, as in the paper's HWasP
+    /// PPO with the law in the policy's graph, as in the paper's HWasP
     Hwasp,
-    /// The design in the action, as in the paper's HWasP-Minimal
+    /// PPO with the design in the action, as in the paper's HWasP-Minimal
     Minimal,
-    /// The hardware stays as it begins; only the controller learns
+    /// PPO on hardware that stays as it begins; only the controller learns
     Fixed,
+    /// CMA-ES over controller and design
+    Cmaes,
+    /// Augmented random search over controller and design
+    Ars,
+    /// CMA-ES over the design; every candidate trains a controller of its own with PPO
+    CmaesRl,
+    /// Augmented random search over the design; every candidate trains a controller of its own with PPO
+    ArsRl,
 }
 
 impl MethodArg {
-    fn name(self) -> &'static str {
+    fn method(self) -> Method {
         match self {
-            Self::Hwasp => "hwasp",
-            Self::Minimal => "minimal",
-            Self::Fixed => "fixed",
+            Self::Hwasp => Method::Hwasp,
+            Self::Minimal => Method::Minimal,
+            Self::Fixed => Method::Fixed,
+            Self::Cmaes => Method::Cmaes,
+            Self::Ars => Method::Ars,
+            Self::CmaesRl => Method::CmaesRl,
+            Self::ArsRl => Method::ArsRl,
         }
     }
 }
@@ -77,7 +91,7 @@ impl MethodArg {
 pub(crate) struct ExperimentArgs {
     /// A name from `hwasp list`, or the path of a TOML file
     pub(crate) experiment: String,
-    /// How the design is placed [default: what the experiment says]
+    /// How learner, controller and hardware are composed [default: what the experiment says]
     #[arg(long, value_enum)]
     method: Option<MethodArg>,
     /// Set one value of the experiment, such as `ppo.clip_ratio=0.1`; may be repeated
@@ -87,7 +101,7 @@ pub(crate) struct ExperimentArgs {
 
 impl ExperimentArgs {
     pub(crate) fn method(&self) -> Option<&'static str> {
-        self.method.map(MethodArg::name)
+        self.method.map(|method| method.method().name())
     }
 
     pub(crate) fn set(&self) -> &[String] {
@@ -134,6 +148,27 @@ pub(crate) struct EvalArgs {
     pub(crate) json: bool,
 }
 
+/// A horizontal axis.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum AxisArg {
+    /// Real simulator steps
+    Steps,
+    /// Time since training began
+    Wall,
+    /// Steps as the paper's plots count them, where the experiment says how
+    Nominal,
+}
+
+impl AxisArg {
+    pub(crate) fn axis(self) -> XAxis {
+        match self {
+            Self::Steps => XAxis::EnvSteps,
+            Self::Wall => XAxis::WallClock,
+            Self::Nominal => XAxis::Nominal,
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlotArgs {
     /// Run folders, as `hwasp train` writes them
@@ -142,6 +177,9 @@ pub(crate) struct PlotArgs {
     /// The picture, .svg or .png
     #[arg(long, value_name = "FILE", default_value = "curves.svg")]
     pub(crate) out: PathBuf,
+    /// What the curves are drawn against
+    #[arg(long, value_enum, default_value_t = AxisArg::Steps)]
+    pub(crate) axis: AxisArg,
     /// A line above it [default: none]
     #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,

@@ -33,6 +33,9 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         summary.wall_s,
         grouped(summary.steps_per_s as u64)
     );
+    if let Some(failed) = summary.failed_candidates.filter(|&failed| failed > 0) {
+        let _ = writeln!(text, "  {} candidates failed and ranked last\n", grouped(failed));
+    }
     for (name, group) in &summary.design {
         let count = group.values.len();
         let unit = &group.unit;
@@ -80,11 +83,22 @@ pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
 /// A sound experiment.
 pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
     let policy = &assembly.policy;
-    let iterations = spec.train.env_steps.div_ceil(spec.train.rows() as u64);
+    let training = match assembly.generation() {
+        Some((popsize, each)) => {
+            let generations = spec.train.env_steps / (popsize as u64 * each);
+            format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
+        }
+        None => format!(
+            "{} iterations of {} episodes of {} steps",
+            grouped(spec.train.env_steps.div_ceil(spec.train.rows() as u64)),
+            spec.train.episodes_per_iteration,
+            spec.train.episode_steps
+        ),
+    };
     let design = policy.space().names().len();
     format!(
         "{} ({}) is sound\n  problem     {}, {design} design parameter{}\n  policy      {} parameters, action: {}\n  \
-         training    {} steps: {} iterations of {} episodes of {} steps\n",
+         training    {} steps: {training}\n",
         spec.name,
         spec.method.name(),
         spec.task.kind().name(),
@@ -92,9 +106,6 @@ pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
         policy.param_count(),
         shorten(policy.action_names()),
         grouped(spec.train.env_steps),
-        grouped(iterations),
-        spec.train.episodes_per_iteration,
-        spec.train.episode_steps,
     )
 }
 

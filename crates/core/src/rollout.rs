@@ -110,6 +110,8 @@ pub struct Episodes {
 pub enum EpisodeKind {
     /// With action noise.
     Training,
+    /// The starts of training, the deterministic policy: for searches, whose noise is in the parameters.
+    Deterministic,
     /// Held-out starts, the deterministic policy.
     Evaluation,
     /// Held-out starts, with action noise.
@@ -193,8 +195,10 @@ struct Lanes<'p> {
 impl<'p> Lanes<'p> {
     fn new(policy: &'p HardwarePolicy, environments: Vec<Box<dyn Environment>>, episodes: &Episodes) -> Self {
         let (reset, noise) = match episodes.kind {
-            EpisodeKind::Training => (Purpose::TrainingReset, Purpose::TrainingNoise),
-            _ => (Purpose::EvaluationReset, Purpose::EvaluationNoise),
+            EpisodeKind::Training | EpisodeKind::Deterministic => (Purpose::TrainingReset, Purpose::TrainingNoise),
+            EpisodeKind::Evaluation | EpisodeKind::NoisyEvaluation => {
+                (Purpose::EvaluationReset, Purpose::EvaluationNoise)
+            }
         };
         let mut environments = environments;
         let named = |purpose, index| stream(episodes.seed, purpose, episodes.iteration, index);
@@ -216,7 +220,7 @@ impl<'p> Lanes<'p> {
             policy,
             bodies: vec![policy.body(); count],
             noise: episodes.indices.clone().map(|index| named(noise, index)).collect(),
-            noisy: episodes.kind != EpisodeKind::Evaluation,
+            noisy: matches!(episodes.kind, EpisodeKind::Training | EpisodeKind::NoisyEvaluation),
             environments,
             horizon,
             batch,

@@ -33,6 +33,8 @@ pub enum Purpose {
     Check = 9,
     /// Candidates of a search: the iteration is the generation, the episode the candidate.
     Search = 10,
+    /// Root seeds of the trainings inside of a search.
+    InnerSeed = 11,
 }
 
 /// The stream of this name.

@@ -13,8 +13,8 @@ use hwasp_tasks::reach::{Reach, ReachError, ReachSettings};
 use thiserror::Error;
 
 use crate::spec::{
-    ActivationKind, Algorithm, BaselineKind, DesignSpec, InitialSpec, InterfaceKind, MassSpringSpec, Place, Problem,
-    RewardKind, Spec,
+    ActivationKind, Algorithm, BaselineKind, DesignSpec, InitialSpec, InterfaceKind, MassSpringSpec, Method, Place,
+    Problem, RewardKind, Spec,
 };
 
 /// Why a checked experiment cannot be put together.
@@ -29,6 +29,27 @@ pub enum AssembleError {
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
+    /// A search whose budget does not hold one generation.
+    #[error(
+        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \
+         steps; train for longer, or with fewer candidates or shorter ones"
+    )]
+    Budget {
+        /// Steps given.
+        given: u64,
+        /// Steps needed.
+        needed: u64,
+        /// Candidates of a generation.
+        popsize: usize,
+        /// Steps of a candidate.
+        each: u64,
+    },
+    /// A search over a design that is all fixed.
+    #[error("method {method} searches the design, but all of it is fixed; let design.placement be \"action\"")]
+    NothingToSearch {
+        /// The method.
+        method: &'static str,
+    },
 }
 
 /// A mechanism in a world.
@@ -69,7 +90,17 @@ impl Assembly {
         let problem = problem(spec)?;
         let policy =
             HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
-        Ok(Self { problem, policy: Arc::new(policy), learner: learner(spec), spec: spec.clone() })
+        let assembly = Self { problem, policy: Arc::new(policy), learner: learner(spec), spec: spec.clone() };
+        assembly.check_budget()?;
+        Ok(assembly)
+    }
+
+    /// The same experiment with the design fixed and only a controller to train, by its gradient.
+    pub(crate) fn frozen(&self, design: &[f64], seed: u64, env_steps: u64) -> Result<Self, AssembleError> {
+        let mut spec = self.spec.clone();
+        (spec.method, spec.seed, spec.train.env_steps) = (Method::Fixed, seed, env_steps);
+        let policy = self.fixed_in(&self.problem.training, design, spec.noise.train)?;
+        Ok(Self { policy: Arc::new(policy), spec, ..self.clone() })
     }
 
     /// The experiment it was made of.
@@ -90,15 +121,16 @@ impl Assembly {
 
     /// The trained controller on the built hardware: every design parameter fixed to `built`, in the world it is for.
     pub fn deployed(&self, built: &[f64]) -> Result<HardwarePolicy, AssembleError> {
-        self.fixed_in(&self.problem.deployment, built)
+        self.fixed_in(&self.problem.deployment, built, false)
     }
 
-    /// The trained controller on hardware fixed to `design`, in any world of this problem.
-    pub fn fixed_in(&self, world: &World, design: &[f64]) -> Result<HardwarePolicy, AssembleError> {
+    /// The trained controller on hardware fixed to `design`, in any world of this problem. `train_noise`: whether its
+    /// parameters hold standard deviations.
+    pub fn fixed_in(&self, world: &World, design: &[f64], train_noise: bool) -> Result<HardwarePolicy, AssembleError> {
         let mut spec = self.policy.spec().clone();
         spec.law = world.law.clone();
         spec.placements = design.iter().map(|&value| Placement::Fixed(value)).collect();
-        spec.noise.train = false;
+        spec.noise.train = train_noise;
         Ok(HardwarePolicy::new(spec, world.make.make(None).spec())?)
     }
 }
@@ -208,7 +240,8 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
             command_anneal: anneal(noise.command_final, noise.command),
             effort_anneal: anneal(noise.effort_final.map(|effort| effort.value), effort),
             design_anneal: anneal(noise.design_final, noise.design),
-            train: noise.train,
+            // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
+            train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),
         },
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hwasp_core::{EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
 use rand::SeedableRng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::assemble::{AssembleError, Assembly, World};
@@ -25,7 +25,7 @@ pub enum EvaluateError {
 }
 
 /// A mean over episodes with its 95 % bootstrap interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanInterval {
     /// The mean.
     pub mean: f64,
@@ -36,7 +36,7 @@ pub struct MeanInterval {
 }
 
 /// What a design and its controller are worth.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Episodes run.
     pub episodes: u64,
@@ -74,7 +74,7 @@ pub fn evaluate_in(
     (episodes, seed): (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    let policy = assembly.fixed_in(world, design)?;
+    let policy = assembly.fixed_in(world, design, false)?;
     let sampler = Sampler::new(Arc::new(policy), Arc::clone(&world.make), None);
     let controller = assembly.policy.controller_params(params);
     let kind = EpisodeKind::Evaluation;

@@ -4,6 +4,7 @@
 //! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
 
 mod assemble;
+pub mod compare;
 mod drawing;
 mod evaluate;
 pub mod metrics;
@@ -11,6 +12,7 @@ mod observer;
 pub mod plot;
 mod policy_file;
 mod run_folder;
+mod search;
 pub mod spec;
 pub mod stats;
 mod summary;

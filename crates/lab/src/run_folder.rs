@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::{MetricsError, MetricsTable, MetricsWriter};
 use crate::observer::{Event, Observer, ObserverError};
-use crate::plot::{Curve, PanelText, PlotError, PlotOptions, RETURN, curves};
+use crate::plot::{Curve, PanelText, PlotError, PlotOptions, RETURN, XAxis, curves};
 use crate::policy_file::{LARGEST_POLICY, PolicyFileError, read_policy, write_policy};
 use crate::spec::{self, Layers, Spec, SpecErrors};
 use crate::summary::Summary;
@@ -77,6 +77,14 @@ pub enum RunError {
         /// What is wrong.
         source: PolicyFileError,
     },
+    /// A file that does not hold what it should.
+    #[error("{path}: {message}")]
+    Decode {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
     /// A value that cannot be written as TOML or JSON.
     #[error("cannot write {file}: {message}")]
     Encode {
@@ -94,6 +102,9 @@ const DESIGN: &str = "design.toml";
 const POLICY: &str = "policy.safetensors";
 const SUMMARY: &str = "summary.json";
 const CURVES: &str = "curves.svg";
+
+/// The largest summary that is read, bytes: ten thousand parameters take less than one.
+const LARGEST_SUMMARY: u64 = 16 << 20;
 
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -183,8 +194,8 @@ impl RunFolder {
                      # interface that is rigid in reality.\n\n";
         self.write(DESIGN, format!("{about}{design}").as_bytes())?;
         let saved = SavedRun::open(&self.path)?;
-        let curve = saved.curve()?;
-        if !curve.env_steps.is_empty() {
+        let curve = saved.curve(XAxis::EnvSteps)?;
+        if !curve.x.is_empty() {
             let plot = curves(&[curve], &saved.plot_options(String::new()))?;
             self.write(CURVES, plot.svg.as_bytes())?;
         }
@@ -280,13 +291,30 @@ impl SavedRun {
         read_policy(&self.assembly.policy, &bytes).map_err(|source| RunError::Policy { path, source })
     }
 
+    /// Its figures.
+    pub fn summary(&self) -> Result<Summary, RunError> {
+        let path = self.path.join(SUMMARY);
+        if !path.is_file() {
+            return Err(RunError::Unfinished { path: self.path.clone(), file: SUMMARY });
+        }
+        let bytes = read_limited(&path, LARGEST_SUMMARY)?;
+        let decode = |e: serde_json::Error| RunError::Decode { path, message: e.to_string() };
+        serde_json::from_slice(&bytes).map_err(decode)
+    }
+
     /// Its learning curve, labelled with experiment and method.
-    pub fn curve(&self) -> Result<Curve, RunError> {
+    pub fn curve(&self, axis: XAxis) -> Result<Curve, RunError> {
+        let table = self.metrics()?;
+        let spec = self.assembly.spec();
+        let label = format!("{} · {}", spec.name, spec.method.name());
+        Ok(Curve::from_table(label, &table, axis, spec.train.nominal_steps))
+    }
+
+    /// Its learning curve as a table.
+    pub fn metrics(&self) -> Result<MetricsTable, RunError> {
         let path = self.path.join(METRICS);
         let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
-        let table = MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })?;
-        let spec = self.assembly.spec();
-        Ok(Curve::from_table(format!("{} · {}", spec.name, spec.method.name()), &table))
+        MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
     }
 
     /// Axis texts, units and known optima for its picture.

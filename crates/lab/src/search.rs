@@ -3,12 +3,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use hwasp_algos::{Ars, ArsConfig, Search, SearchError, StateFilter};
+use hwasp_algos::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter};
 use hwasp_core::{EpisodeKind, Episodes, Policy, Purpose, Sampler, Serial, stream};
 use rand::RngExt;
 
 use crate::assemble::{AssembleError, Assembly};
-use crate::spec::{Method, Score};
+use crate::spec::{CmaesSpec, Method, Score};
 use crate::train::{Learned, Loop, TrainError, gradient, mean_returns};
 
 /// Episodes on which the last centre and the best candidate are compared: a candidate that was best of many on few
@@ -47,7 +47,7 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
     let mut search = problem.searcher()?;
     let mut learned = Learned::new(problem.start.clone());
     let mut best: Option<(f64, Vec<f32>)> = None;
-    loop {
+    while search.stopped().is_none() {
         let candidates = search.ask();
         let cost = candidates.len() as u64 * assembly.candidate_steps() + assembly.final_steps();
         if learned.env_steps + cost > spec.train.env_steps || run.stop.load(Ordering::Relaxed) {
@@ -63,7 +63,9 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
             break;
         }
         if let Some(filter) = &mut problem.filter {
-            scored.iter().for_each(|s| filter.update(&s.seen));
+            for candidate in &scored {
+                filter.update(&candidate.seen);
+            }
         }
         let scores: Vec<f64> =
             scored.iter().map(|s| s.returns.map_or(f64::NEG_INFINITY, |r| problem.pick(r))).collect();
@@ -88,6 +90,11 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
     Ok(learned)
 }
 
+/// Candidates as asked for; none for the default.
+fn popsize(cmaes: &CmaesSpec) -> Option<usize> {
+    (cmaes.popsize > 0).then_some(cmaes.popsize)
+}
+
 impl Problem<'_> {
     fn searcher(&self) -> Result<Box<dyn Search>, SearchError> {
         let spec = self.assembly.spec();
@@ -108,14 +115,14 @@ impl Problem<'_> {
             _ => {
                 let config = CmaesConfig {
                     sigma: cmaes.sigma,
-                    popsize: (cmaes.popsize > 0).then_some(cmaes.popsize),
+                    popsize: popsize(cmaes),
                     lower: limits(0.0),
                     upper: limits(1.0),
                     restarts: cmaes.restarts as u32,
                     separable: cmaes.separable,
                     active: cmaes.active,
                 };
-                Ok(Box::new(Cmaes::new(config, start, spec.seed)?))
+                Ok(Box::new(Cmaes::new(config, &start, spec.seed)?))
             }
         }
     }
@@ -180,17 +187,15 @@ impl Problem<'_> {
         let kind = if spec.search.noise { EpisodeKind::Training } else { EpisodeKind::Deterministic };
         let count = indices.end - indices.start;
         let asked = Episodes { seed: spec.seed, iteration, indices, progress: 0.0, kind };
-        match self.sampler.collect(&Serial, &params, &asked) {
-            Ok(batch) => Scored {
-                params,
-                returns: Some(mean_returns(&batch, spec.ppo.discount)),
-                env_steps: batch.rows() as u64,
-                seen: if self.filter.is_some() { batch.obs } else { Vec::new() },
-            },
-            Err(_) => {
-                let env_steps = count * spec.train.episode_steps as u64;
-                Scored { params, returns: None, env_steps, seen: Vec::new() }
-            }
+        let Ok(batch) = self.sampler.collect(&Serial, &params, &asked) else {
+            let env_steps = count * spec.train.episode_steps as u64;
+            return Scored { params, returns: None, env_steps, seen: Vec::new() };
+        };
+        Scored {
+            params,
+            returns: Some(mean_returns(&batch, spec.ppo.discount)),
+            env_steps: batch.rows() as u64,
+            seen: if self.filter.is_some() { batch.obs } else { Vec::new() },
         }
     }
 
@@ -252,8 +257,9 @@ impl Assembly {
             if spec.method.trains_inside() { self.policy.free_design().len() } else { self.policy.param_count() };
         let popsize = match spec.method {
             Method::Ars | Method::ArsRl => 2 * spec.ars.directions,
-            Method::Cmaes | Method::CmaesRl if spec.cmaes.popsize > 0 => spec.cmaes.popsize,
-            Method::Cmaes | Method::CmaesRl => CmaesConfig::default_popsize(dimension),
+            Method::Cmaes | Method::CmaesRl => {
+                CmaesConfig { popsize: popsize(&spec.cmaes), ..CmaesConfig::default() }.first_popsize(dimension)
+            }
             Method::Hwasp | Method::Minimal | Method::Fixed => return None,
         };
         Some((popsize, self.candidate_steps()))
@@ -271,28 +277,5 @@ impl Assembly {
             return Err(AssembleError::Budget { given, needed, popsize, each });
         }
         Ok(())
-    }
-}
-
-// SHIM
-struct CmaesConfig {
-    sigma: f64,
-    popsize: Option<usize>,
-    lower: Option<Vec<f64>>,
-    upper: Option<Vec<f64>>,
-    restarts: u32,
-    separable: bool,
-    active: bool,
-}
-impl CmaesConfig {
-    fn default_popsize(n: usize) -> usize {
-        4 + (3.0 * (n as f64).ln()) as usize
-    }
-}
-struct Cmaes;
-impl Cmaes {
-    fn new(c: CmaesConfig, _s: Vec<f64>, _seed: u64) -> Result<Ars, SearchError> {
-        let _ = (c.sigma, c.popsize, c.lower, c.upper, c.restarts, c.separable, c.active);
-        Err(SearchError::AllFailed { candidates: 0, generation: 0 })
     }
 }

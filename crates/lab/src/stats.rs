@@ -203,3 +203,35 @@ fn mean_of(values: &[f64]) -> f64 {
     let sum: f64 = values.iter().sum();
     if sum.is_finite() { sum / n } else { values.iter().map(|v| v / n).sum() }
 }
+
+/// How probably a value of `one` is larger than a value of `other`: the share of all pairs, ties counted half
+/// (Mann and Whitney's U over the number of pairs), with the 95 % percentile interval of 2000 resamples of both.
+pub fn improvement(one: &[f64], other: &[f64], stream: &mut Stream) -> Result<(f64, Interval), StatsError> {
+    let (one, other) = (Sample::new(one)?, Sample::new(other)?);
+    let share = |one: &[f64], other: &[f64]| {
+        let wins = one.iter().flat_map(|x| {
+            other.iter().map(move |y| {
+                if x > y {
+                    1.0
+                } else if x == y {
+                    0.5
+                } else {
+                    0.0
+                }
+            })
+        });
+        wins.sum::<f64>() / (one.len() * other.len()) as f64
+    };
+    let drawn = |sample: &Sample, stream: &mut Stream| -> Vec<f64> {
+        (0..sample.sorted.len()).map(|_| sample.sorted[index_below(sample.sorted.len(), stream)]).collect()
+    };
+    let shares: Vec<f64> = (0..Bootstrap::default().resamples)
+        .map(|_| {
+            let (a, b) = (drawn(&one, stream), drawn(&other, stream));
+            share(&a, &b)
+        })
+        .collect();
+    let shares = Sample::new(&shares)?;
+    let interval = Interval { low: shares.quantile(0.025), high: shares.quantile(0.975) };
+    Ok((share(&one.sorted, &other.sorted), interval))
+}

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::assemble::Assembly;
 use crate::evaluate::Evaluation;
 use crate::train::Trained;
 
 /// One group of design parameters, SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DesignGroupSummary {
     /// The SI unit of all values, empty for pure numbers.
     pub unit: String,
@@ -20,7 +20,7 @@ pub struct DesignGroupSummary {
     /// The sum of the values to build.
     pub total_as_built: f64,
     /// The best total as built, where it is known.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimum: Option<f64>,
     /// The values as trained.
     pub values: Vec<f64>,
@@ -29,14 +29,14 @@ pub struct DesignGroupSummary {
 }
 
 /// A run in figures.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The experiment.
     pub experiment: String,
     /// How learner, policy and hardware were composed.
-    pub method: &'static str,
+    pub method: String,
     /// The problem.
-    pub task: &'static str,
+    pub task: String,
     /// The root seed.
     pub seed: u64,
     /// Iterations done.
@@ -51,6 +51,9 @@ pub struct Summary {
     pub training_discounted_return: f64,
     /// The same, undiscounted.
     pub training_return: f64,
+    /// Candidates of a search that failed and ranked last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_candidates: Option<u64>,
     /// The deterministic policy on held-out starts, on the hardware as built.
     pub evaluation: Evaluation,
     /// Whether training was stopped before its budget was spent.
@@ -65,8 +68,8 @@ impl Summary {
         let spec = assembly.spec();
         Self {
             experiment: spec.name.clone(),
-            method: spec.method.name(),
-            task: spec.task.kind().name(),
+            method: spec.method.name().to_owned(),
+            task: spec.task.kind().name().to_owned(),
             seed: spec.seed,
             iterations: trained.iterations,
             env_steps: trained.env_steps,
@@ -74,6 +77,7 @@ impl Summary {
             steps_per_s: trained.env_steps as f64 / trained.wall_s.max(f64::MIN_POSITIVE),
             training_discounted_return: trained.training_discounted_return,
             training_return: trained.training_return,
+            failed_candidates: trained.failed_candidates,
             evaluation: trained.evaluation.clone(),
             stopped: trained.stopped,
             design: design_summary(assembly, &trained.params),

@@ -1,16 +1,18 @@
 //! The training loop: jobs out, batches in, an update, an event.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use hwasp_algos::{LearnError, Learner};
-use hwasp_core::{EpisodeKind, Episodes, Executor, RolloutError, Sampler};
+use hwasp_algos::{LearnError, Learner, SearchError};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, RolloutError, Sampler};
 use thiserror::Error;
 
-use crate::assemble::Assembly;
+use crate::assemble::{AssembleError, Assembly};
 use crate::evaluate::{EvaluateError, Evaluation, evaluate};
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
+use crate::search::search;
 
 /// Why a training ended early.
 #[derive(Debug, Error)]
@@ -21,6 +23,12 @@ pub enum TrainError {
     /// An update failed.
     #[error(transparent)]
     Learn(#[from] LearnError),
+    /// A search could not go on.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// A candidate's own training cannot be put together.
+    #[error(transparent)]
+    Assemble(#[from] AssembleError),
     /// The evaluation failed.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),
@@ -34,9 +42,9 @@ pub enum TrainError {
 pub struct Trained {
     /// The policy's parameters.
     pub params: Vec<f32>,
-    /// Iterations done.
+    /// Iterations done; generations of a search.
     pub iterations: u64,
-    /// Real simulator steps taken in training.
+    /// Real simulator steps taken in training, those of every candidate and every training inside included.
     pub env_steps: u64,
     /// Time the training took, s, the evaluation apart.
     pub wall_s: f64,
@@ -44,6 +52,8 @@ pub struct Trained {
     pub training_discounted_return: f64,
     /// The same, undiscounted.
     pub training_return: f64,
+    /// Candidates of a search that failed and ranked last; none where the method does not search.
+    pub failed_candidates: Option<u64>,
     /// The final design on held-out starts.
     pub evaluation: Evaluation,
     /// Whether it was stopped before its time.
@@ -62,64 +72,117 @@ pub fn train(
     stop: &AtomicBool,
 ) -> Result<Trained, TrainError> {
     let spec = assembly.spec();
+    let totals = assembly.total_names();
+    observer.on(Event::Started { env_steps: spec.train.env_steps, totals: &totals })?;
+    let mut run = Loop { executor, observer, stop, began: Instant::now() };
+    let learned = if spec.method.searches() { search(assembly, &mut run)? } else { gradient(assembly, &mut run)? };
+    let wall_s = run.began.elapsed().as_secs_f64();
+    observer.on(Event::Evaluating)?;
+    let asked = (spec.train.evaluation_episodes as u64, spec.train.evaluation_seed);
+    let evaluation = evaluate(assembly, &learned.params, asked, executor)?;
+    observer.on(Event::Evaluated(&evaluation))?;
+    let (training_discounted_return, training_return) = learned.trailing();
+    Ok(Trained {
+        iterations: learned.iterations,
+        env_steps: learned.env_steps,
+        wall_s,
+        training_discounted_return,
+        training_return,
+        failed_candidates: spec.method.searches().then_some(learned.failed_candidates),
+        evaluation,
+        stopped: stop.load(Ordering::Relaxed) && learned.env_steps < spec.train.env_steps,
+        params: learned.params,
+    })
+}
+
+/// What a training loop runs with.
+pub(crate) struct Loop<'a> {
+    pub(crate) executor: &'a dyn Executor,
+    pub(crate) observer: &'a mut dyn Observer,
+    pub(crate) stop: &'a AtomicBool,
+    pub(crate) began: Instant,
+}
+
+/// Where a training stands.
+pub(crate) struct Learned {
+    pub(crate) params: Vec<f32>,
+    pub(crate) iterations: u64,
+    pub(crate) env_steps: u64,
+    pub(crate) failed_candidates: u64,
+    /// Mean discounted and undiscounted returns of the last iterations.
+    recent: VecDeque<(f64, f64)>,
+}
+
+impl Learned {
+    pub(crate) fn new(params: Vec<f32>) -> Self {
+        Self { params, iterations: 0, env_steps: 0, failed_candidates: 0, recent: VecDeque::new() }
+    }
+
+    /// Counts an iteration whose steps are counted already, and tells of it. `update` gives KL divergence and entropy.
+    pub(crate) fn tell(
+        &mut self,
+        returns: (f64, f64),
+        (kl, entropy): (f64, f64),
+        design_totals: Vec<f64>,
+        run: &mut Loop<'_>,
+    ) -> Result<(), ObserverError> {
+        self.recent.push_back(returns);
+        if self.recent.len() > TRAILING {
+            self.recent.pop_front();
+        }
+        run.observer.on(Event::Iteration(&MetricsRow {
+            iteration: self.iterations,
+            env_steps: self.env_steps,
+            wall_s: run.began.elapsed().as_secs_f64(),
+            discounted_return: returns.0,
+            undiscounted_return: returns.1,
+            kl,
+            entropy,
+            design_totals,
+        }))?;
+        self.iterations += 1;
+        Ok(())
+    }
+
+    /// The mean discounted and undiscounted returns of the last [`TRAILING`] iterations.
+    pub(crate) fn trailing(&self) -> (f64, f64) {
+        let mean =
+            |pick: fn(&(f64, f64)) -> f64| self.recent.iter().map(pick).sum::<f64>() / self.recent.len().max(1) as f64;
+        (mean(|r| r.0), mean(|r| r.1))
+    }
+}
+
+/// Follows the policy's gradient.
+pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned, TrainError> {
+    let spec = assembly.spec();
     let mut learner = assembly.learner(assembly.init());
     let sampler =
         Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
-    let totals = assembly.total_names();
-    observer.on(Event::Started { env_steps: spec.train.env_steps, totals: &totals })?;
-    let began = Instant::now();
-    let (mut iteration, mut env_steps) = (0, 0);
-    let mut recent: Vec<(f64, f64)> = Vec::new();
-    while env_steps < spec.train.env_steps && !stop.load(Ordering::Relaxed) {
-        let progress = env_steps as f64 / spec.train.env_steps as f64;
-        let batch = sampler.collect(
-            executor,
-            learner.params(),
-            &Episodes {
-                seed: spec.seed,
-                iteration,
-                indices: 0..spec.train.episodes_per_iteration as u64,
-                progress,
-                kind: EpisodeKind::Training,
-            },
-        )?;
-        env_steps += batch.rows() as u64;
-        let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
-        let returns = (mean(batch.returns(spec.ppo.discount)), mean(batch.returns(1.0)));
-        let update = learner.update(&batch, progress, iteration)?;
-        let design = assembly.policy.design(learner.params());
-        recent.push(returns);
-        if recent.len() > TRAILING {
-            recent.remove(0);
-        }
-        observer.on(Event::Iteration(&MetricsRow {
+    let mut learned = Learned::new(Vec::new());
+    while learned.env_steps < spec.train.env_steps && !run.stop.load(Ordering::Relaxed) {
+        let progress = learned.env_steps as f64 / spec.train.env_steps as f64;
+        let iteration = learned.iterations;
+        let asked = Episodes {
+            seed: spec.seed,
             iteration,
-            env_steps,
-            wall_s: began.elapsed().as_secs_f64(),
-            discounted_return: returns.0,
-            undiscounted_return: returns.1,
-            kl: update.kl,
-            entropy: update.entropy,
-            design_totals: assembly.policy.space().totals(&design),
-        }))?;
-        iteration += 1;
+            indices: 0..spec.train.episodes_per_iteration as u64,
+            progress,
+            kind: EpisodeKind::Training,
+        };
+        let batch = sampler.collect(run.executor, learner.params(), &asked)?;
+        learned.env_steps += batch.rows() as u64;
+        let update = learner.update(&batch, progress, iteration)?;
+        let totals = assembly.policy.space().totals(&assembly.policy.design(learner.params()));
+        learned.tell(mean_returns(&batch, spec.ppo.discount), (update.kl, update.entropy), totals, run)?;
     }
-    let wall_s = began.elapsed().as_secs_f64();
-    observer.on(Event::Evaluating)?;
-    let asked = (spec.train.evaluation_episodes as u64, spec.train.evaluation_seed);
-    let evaluation = evaluate(assembly, learner.params(), asked, executor)?;
-    observer.on(Event::Evaluated(&evaluation))?;
-    let trailing = |pick: fn(&(f64, f64)) -> f64| recent.iter().map(pick).sum::<f64>() / recent.len().max(1) as f64;
-    Ok(Trained {
-        params: learner.params().to_vec(),
-        iterations: iteration,
-        env_steps,
-        wall_s,
-        training_discounted_return: trailing(|r| r.0),
-        training_return: trailing(|r| r.1),
-        evaluation,
-        stopped: env_steps < spec.train.env_steps,
-    })
+    learned.params = learner.params().to_vec();
+    Ok(learned)
+}
+
+/// The mean discounted and undiscounted returns of a batch's episodes.
+pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
+    let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
+    (mean(batch.returns(discount)), mean(batch.returns(1.0)))
 }
 
 impl Assembly {

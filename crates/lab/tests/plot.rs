@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use hwasp_lab::metrics::{MetricsRow, MetricsTable};
-use hwasp_lab::plot::{Band, Curve, Note, PanelText, PlotError, PlotOptions, RETURN, curves, render_png, write_plot};
+use hwasp_lab::plot::{
+    Band, Curve, Note, PanelText, PlotError, PlotOptions, RETURN, XAxis, curves, render_png, write_plot,
+};
 use resvg::{tiny_skia::Pixmap, usvg::roxmltree};
 
 /// A run of `rows` rows that learns; `shift` tells runs apart.
@@ -11,7 +13,7 @@ fn run(label: &str, rows: u32, shift: f64) -> Curve {
     let wave = |i: u32| f64::from(i % 5) * 10.0;
     Curve {
         label: label.to_owned(),
-        env_steps: (1..=rows).map(|i| u64::from(i) * 40_000).collect(),
+        x: (1..=rows).map(|i| f64::from(i) * 40_000.0).collect(),
         discounted_return: (0..rows).map(|i| -1100.0 + f64::from(i) * 6.0 + wave(i) + shift).collect(),
         totals: vec![("stiffness_total".to_owned(), (0..rows).map(|i| 60.0 - 0.4 * f64::from(i) + shift).collect())],
     }
@@ -132,7 +134,7 @@ fn rows_that_are_no_numbers_are_skipped_and_reported() {
     let mut odd = run("HWasP", 100, 0.0);
     (odd.discounted_return[10], odd.discounted_return[11], odd.discounted_return[12]) =
         (f64::NAN, f64::INFINITY, 1e200);
-    odd.env_steps[20] = 0;
+    odd.x[20] = 0.0;
     let plot = curves(&[odd], &options()).unwrap();
     let note = |series: &str, rows| Note::Skipped { label: "HWasP".to_owned(), series: series.to_owned(), rows };
     assert_eq!(plot.notes, [note(RETURN, 4), note("stiffness_total", 1)]);
@@ -149,7 +151,7 @@ fn runs_with_hardly_any_rows_are_drawn() {
     let single = curves(&[run("one row", 1, 0.0)], &options()).unwrap();
     assert!(count(&single.svg, "circle") >= 2 && single.notes.is_empty());
     assert!(render_png(&empty, 1.0).is_ok() && render_png(&single, 1.0).is_ok());
-    let same = Curve { env_steps: vec![0; 5], discounted_return: vec![-3.0; 5], ..Curve::default() };
+    let same = Curve { x: vec![0.0; 5], discounted_return: vec![-3.0; 5], ..Curve::default() };
     assert!(render_png(&curves(&[same], &options()).unwrap(), 1.0).is_ok());
 }
 
@@ -208,7 +210,7 @@ fn what_cannot_be_drawn_is_an_error() {
     assert!(matches!(of(&[run("a", 5, 0.0)], 0), PlotError::Window(0)));
     let mut uneven = run("a", 5, 0.0);
     uneven.totals[0].1.pop();
-    assert_eq!(of(&[uneven], 11).to_string(), "`a` has 5 rows of env_steps but 4 of stiffness_total");
+    assert_eq!(of(&[uneven], 11).to_string(), "`a` has 5 rows of steps or times but 4 of stiffness_total");
     let named = |i: u32| Curve { totals: vec![(format!("total_{i}"), vec![1.0; 5])], ..run("a", 5, 0.0) };
     assert!(matches!(of(&(0..30).map(named).collect::<Vec<_>>(), 11), PlotError::Panels(31)));
 }
@@ -218,7 +220,7 @@ fn a_table_becomes_a_curve() {
     let row = |i: u64| MetricsRow {
         iteration: i,
         env_steps: 100 * i,
-        wall_s: 0.0,
+        wall_s: 0.5 * i as f64,
         discounted_return: -(i as f64),
         undiscounted_return: 0.0,
         kl: 0.0,
@@ -227,7 +229,10 @@ fn a_table_becomes_a_curve() {
     };
     let design_totals = vec!["a_total".to_owned(), "b_total".to_owned()];
     let table = MetricsTable { design_totals, rows: (0..3).map(row).collect(), unfinished_line: None };
-    let curve = Curve::from_table("HWasP", &table);
-    assert_eq!((curve.env_steps, curve.discounted_return), (vec![0, 100, 200], vec![-0.0, -1.0, -2.0]));
+    let x = |axis| Curve::from_table("HWasP", &table, axis, 50).x;
+    assert_eq!(x(XAxis::WallClock), [0.0, 0.5, 1.0]);
+    assert_eq!(x(XAxis::Nominal), [50.0, 100.0, 150.0]);
+    let curve = Curve::from_table("HWasP", &table, XAxis::EnvSteps, 50);
+    assert_eq!((curve.x, curve.discounted_return), (vec![0.0, 100.0, 200.0], vec![-0.0, -1.0, -2.0]));
     assert_eq!(curve.totals, [("a_total".to_owned(), vec![5.0; 3]), ("b_total".to_owned(), vec![0.0, 1.0, 2.0])]);
 }

@@ -145,7 +145,9 @@ impl Cmaes {
         if scored < positive.len() {
             positive[scored..].fill(0.0);
             let sum: f64 = positive.iter().sum();
-            positive.iter_mut().for_each(|w| *w /= sum);
+            for w in &mut *positive {
+                *w /= sum;
+            }
         }
         let mu_eff = effective(positive);
         (weights, mu_eff)

@@ -96,6 +96,16 @@ impl HardwarePolicy {
         design
     }
 
+    /// The design parameters that are not fixed, in the order of their stand-ins.
+    pub fn free_design(&self) -> &[usize] {
+        &self.composition.free
+    }
+
+    /// Where those stand-ins lie in the parameter vector.
+    pub fn design_params(&self) -> Range<usize> {
+        self.range("design")
+    }
+
     /// The controller's part of a parameter vector.
     pub fn controller_params<'p>(&self, params: &'p [f32]) -> &'p [f32] {
         &params[self.range("controller")]

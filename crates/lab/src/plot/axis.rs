@@ -9,10 +9,10 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// The step axis: from 0 to the last step drawn, about five ticks.
-    pub(super) fn of_steps(last: f64) -> Self {
+    /// An axis of steps or seconds: from 0 to the last one drawn, about five ticks.
+    pub(super) fn of_progress(last: f64) -> Self {
         let high = last.max(1.0);
-        // There are no parts of steps.
+        // There are no parts of steps, and parts of seconds do not matter.
         Self { low: 0.0, high, step: round_step(high, 5.0).max(1.0) }
     }
 
@@ -114,13 +114,13 @@ mod tests {
 
     #[test]
     fn step_axes_read_well() {
-        assert_eq!(Axis::of_steps(4e6).engineering_labels(), ["0", "1M", "2M", "3M", "4M"]);
+        assert_eq!(Axis::of_progress(4e6).engineering_labels(), ["0", "1M", "2M", "3M", "4M"]);
         assert_eq!(
-            Axis::of_steps(1.2e6).engineering_labels(),
+            Axis::of_progress(1.2e6).engineering_labels(),
             ["0.00M", "0.25M", "0.50M", "0.75M", "1.00M"].map(|l| { if l == "0.00M" { "0" } else { l } })
         );
-        assert_eq!(Axis::of_steps(500_000.0).engineering_labels(), ["0", "100k", "200k", "300k", "400k", "500k"]);
-        assert_eq!(Axis::of_steps(0.0).engineering_labels().first().map(String::as_str), Some("0"));
+        assert_eq!(Axis::of_progress(500_000.0).engineering_labels(), ["0", "100k", "200k", "300k", "400k", "500k"]);
+        assert_eq!(Axis::of_progress(0.0).engineering_labels().first().map(String::as_str), Some("0"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Pictures of runs: the discounted return and each design total against real environment steps.
+//! Pictures of runs: the discounted return and each design total against real environment steps or time.
 //!
 //! A label with one run shows its return as logged (pale) and as a trailing mean (full). Runs that share a label, such as
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
@@ -11,7 +11,7 @@ mod panel;
 mod series;
 mod svg;
 
-use crate::metrics::MetricsTable;
+use crate::metrics::{MetricsRow, MetricsTable};
 use crate::stats::StatsError;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -33,8 +33,8 @@ pub const LONGEST_WINDOW: usize = 1001;
 pub struct Curve {
     /// What the legend says; runs with the same label are summarised together.
     pub label: String,
-    /// Real simulator steps, one per row.
-    pub env_steps: Vec<u64>,
+    /// Where each row lies on the horizontal axis; never falling.
+    pub x: Vec<f64>,
     /// Mean discounted return of the training episodes, one per row.
     pub discounted_return: Vec<f64>,
     /// The design totals, each with its column name and one SI value per row.
@@ -42,14 +42,19 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// The curve of a run's table.
-    pub fn from_table(label: impl Into<String>, table: &MetricsTable) -> Self {
+    /// The curve of a run's table. A nominal axis counts `nominal_steps` per iteration.
+    pub fn from_table(label: impl Into<String>, table: &MetricsTable, axis: XAxis, nominal_steps: u64) -> Self {
+        let x = |row: &MetricsRow| match axis {
+            XAxis::WallClock => row.wall_s,
+            XAxis::Nominal if nominal_steps > 0 => ((row.iteration + 1) * nominal_steps) as f64,
+            XAxis::EnvSteps | XAxis::Nominal => row.env_steps as f64,
+        };
         let total = |(place, name): (usize, &String)| {
             (name.clone(), table.rows.iter().filter_map(|row| row.design_totals.get(place).copied()).collect())
         };
         Self {
             label: label.into(),
-            env_steps: table.rows.iter().map(|row| row.env_steps).collect(),
+            x: table.rows.iter().map(x).collect(),
             discounted_return: table.rows.iter().map(|row| row.discounted_return).collect(),
             totals: table.design_totals.iter().enumerate().map(total).collect(),
         }
@@ -60,6 +65,28 @@ impl Curve {
             return Some(&self.discounted_return);
         }
         self.totals.iter().find(|total| total.0 == name).map(|total| total.1.as_slice())
+    }
+}
+
+/// What curves are drawn against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum XAxis {
+    /// Real simulator steps.
+    #[default]
+    EnvSteps,
+    /// Time since training began, s.
+    WallClock,
+    /// Steps as the paper counts them: a nominal number per iteration, whatever an iteration took.
+    Nominal,
+}
+
+impl XAxis {
+    fn label(self) -> &'static str {
+        match self {
+            Self::EnvSteps => "real environment steps",
+            Self::WallClock => "wall-clock time (s)",
+            Self::Nominal => "nominal environment steps",
+        }
     }
 }
 
@@ -91,6 +118,7 @@ pub enum Band {
 /// | option | default | what it does | range |
 /// |---|---|---|---|
 /// | `title` | none | the line above everything | any text |
+/// | `x_axis` | `EnvSteps` | what the curves are drawn against; their `x` has to be that | - |
 /// | `window` | 11 | rows in the trailing mean of the return | 1 to 1001 |
 /// | `band` | `MinMax` | the band around several runs | - |
 /// | `panels` | none | axis texts and optima by column; a column without gets its own name | - |
@@ -98,6 +126,8 @@ pub enum Band {
 pub struct PlotOptions {
     /// The line above everything; empty for none.
     pub title: String,
+    /// What the curves are drawn against.
+    pub x_axis: XAxis,
     /// Rows in the trailing mean of the return.
     pub window: usize,
     /// The band around several runs.
@@ -108,7 +138,7 @@ pub struct PlotOptions {
 
 impl Default for PlotOptions {
     fn default() -> Self {
-        Self { title: String::new(), window: 11, band: Band::MinMax, panels: Vec::new() }
+        Self { title: String::new(), x_axis: XAxis::EnvSteps, window: 11, band: Band::MinMax, panels: Vec::new() }
     }
 }
 
@@ -139,7 +169,7 @@ pub enum PlotError {
     #[error("a trailing mean over {0} rows is outside [1, {LONGEST_WINDOW}]; 11 is usual")]
     Window(usize),
     /// A column with another number of values than there are steps.
-    #[error("`{label}` has {steps} rows of env_steps but {values} of {series}")]
+    #[error("`{label}` has {steps} rows of steps or times but {values} of {series}")]
     Lengths {
         /// The run's label.
         label: String,
@@ -204,7 +234,7 @@ pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> 
     let mut panels = Vec::new();
     for column in columns {
         let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));
-        panels.push(panel::Panel::new(text_of(column, options), shapes.collect::<Result<_, _>>()?));
+        panels.push(panel::Panel::new(text_of(column, options), options.x_axis, shapes.collect::<Result<_, _>>()?));
     }
     let legend: Vec<draw::Entry<'_>> =
         groups.iter().map(|group| draw::Entry { label: &group[0].label, runs: group.len() }).collect();

@@ -1,9 +1,9 @@
 //! One panel: axes, grid, and the lines of every label.
 
-use super::PanelText;
 use super::axis::{Axis, value_label};
 use super::series::{Line, Point, Shape, thin};
 use super::svg::{Anchor, Svg};
+use super::{PanelText, XAxis};
 
 /// The plotting area, in pixels.
 pub(super) const AREA: (f64, f64) = (360.0, 236.0);
@@ -37,12 +37,13 @@ pub(super) fn stroke(place: usize) -> String {
 #[derive(Debug)]
 pub(super) struct Panel {
     pub(super) text: PanelText,
+    x_axis: XAxis,
     shapes: Vec<Option<Shape>>,
 }
 
 impl Panel {
-    pub(super) fn new(text: PanelText, shapes: Vec<Option<Shape>>) -> Self {
-        Self { text, shapes }
+    pub(super) fn new(text: PanelText, x_axis: XAxis, shapes: Vec<Option<Shape>>) -> Self {
+        Self { text, x_axis, shapes }
     }
 
     /// Whether a label is drawn as a mean with a band.
@@ -78,8 +79,8 @@ impl Panel {
         let (low, high) =
             values.chain(self.text.optimum).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let values = if low <= high { Axis::of_values(low, high) } else { Axis::of_values(0.0, 1.0) };
-        let frame = Frame { corner, steps: Axis::of_steps(last), values };
-        frame.draw_axes(svg, &self.text);
+        let frame = Frame { corner, x: Axis::of_progress(last), values };
+        frame.draw_axes(svg, &self.text, self.x_axis);
         if points.is_empty() {
             let middle = (corner.0 + AREA.0 / 2.0, corner.1 + AREA.1 / 4.0);
             svg.text(middle, 12.0, Anchor::Middle, GREY, "no rows to draw");
@@ -103,21 +104,21 @@ impl Panel {
 /// A plotting area with its axes.
 struct Frame {
     corner: (f64, f64),
-    steps: Axis,
+    x: Axis,
     values: Axis,
 }
 
 impl Frame {
     /// Where a point lies on the page.
     fn at(&self, point: Point) -> (f64, f64) {
-        let (x, y) = (self.steps.share(point.0), self.values.share(point.1));
+        let (x, y) = (self.x.share(point.0), self.values.share(point.1));
         (self.corner.0 + x * AREA.0, self.corner.1 + (1.0 - y) * AREA.1)
     }
 
-    fn draw_axes(&self, svg: &mut Svg, text: &PanelText) {
+    fn draw_axes(&self, svg: &mut Svg, text: &PanelText, x_axis: XAxis) {
         let (left, top) = self.corner;
         let (right, bottom) = (left + AREA.0, top + AREA.1);
-        for (tick, label) in self.steps.ticks().into_iter().zip(self.steps.engineering_labels()) {
+        for (tick, label) in self.x.ticks().into_iter().zip(self.x.engineering_labels()) {
             let x = self.at((tick, 0.0)).0;
             svg.line((x, top), (x, bottom), GRID_LINE);
             svg.line((x, bottom), (x, bottom + 4.0), FRAME);
@@ -132,7 +133,7 @@ impl Frame {
         svg.line((left, top), (left, bottom), FRAME);
         svg.line((left, bottom), (right, bottom), FRAME);
         let middle = (left + AREA.0 / 2.0, bottom + 35.0);
-        svg.text(middle, 12.0, Anchor::Middle, INK, "real environment steps");
+        svg.text(middle, 12.0, Anchor::Middle, INK, x_axis.label());
         let unit = if text.unit.is_empty() { String::new() } else { format!(" ({})", text.unit) };
         svg.upward_text((left - 56.0, top + AREA.1 / 2.0), 12.0, INK, &format!("{}{unit}", text.label));
     }

@@ -12,7 +12,7 @@ const GRID: usize = 201;
 /// The bootstrap of a picture draws the same resamples at each of its grid points, and every time.
 const RESAMPLES: [u8; 32] = *b"bootstrap bands of hwasp's plots";
 
-/// A point: steps, value.
+/// A point: steps or seconds, value.
 pub(super) type Point = (f64, f64);
 
 /// One run in one panel.
@@ -107,10 +107,10 @@ pub(super) fn shape(
         let Some(values) = run.column(column) else { continue };
         present = true;
         let (label, series) = (run.label.clone(), column.to_owned());
-        if values.len() != run.env_steps.len() {
-            return Err(PlotError::Lengths { label, series, steps: run.env_steps.len(), values: values.len() });
+        if values.len() != run.x.len() {
+            return Err(PlotError::Lengths { label, series, steps: run.x.len(), values: values.len() });
         }
-        let raw = drawable(&run.env_steps, values);
+        let raw = drawable(&run.x, values);
         let rows = values.len() - raw.len();
         if raw.is_empty() {
             notes.push(Note::NoRows { label, series });
@@ -171,10 +171,9 @@ fn combine(
 }
 
 /// The rows with a finite value of sane size and steps that do not fall.
-fn drawable(steps: &[u64], values: &[f64]) -> Vec<Point> {
+fn drawable(steps: &[f64], values: &[f64]) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::with_capacity(values.len());
     for (&step, &value) in steps.iter().zip(values) {
-        let step = step as f64;
         // A NaN fails the comparison too.
         if value.abs() <= LARGEST && kept.last().is_none_or(|last| last.0 <= step) {
             kept.push((step, value));
@@ -244,7 +243,7 @@ mod tests {
 
     #[test]
     fn rows_that_cannot_be_drawn_are_left_out() {
-        let kept = drawable(&[0, 1, 2, 1, 3], &[1.0, f64::NAN, 2.0, 5.0, f64::NEG_INFINITY]);
+        let kept = drawable(&[0.0, 1.0, 2.0, 1.0, 3.0], &[1.0, f64::NAN, 2.0, 5.0, f64::NEG_INFINITY]);
         assert_eq!(kept, [(0.0, 1.0), (2.0, 2.0)]);
     }
 

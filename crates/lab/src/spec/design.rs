@@ -57,7 +57,7 @@ pub struct PlacedRange {
 ///
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
-/// | `placement` | hwasp: "graph", minimal: "action", fixed: "fixed" | where the parameters sit | |
+/// | `placement` | hwasp: "graph", fixed: "fixed", else "action" | where the parameters sit | |
 /// | `placements` | none | where some of them sit: `{ "stiffness[0]" = "action", "stiffness[3..5]" = "fixed" }` (3 and 4), or a list of one place each | |
 /// | `initial` | "logit" | `logit`, `middle` or a quantity | inside of the parameter's limits |
 /// | `logit_half_width` | 5.0 | half width of the uniform start before the squash | 0 to 20 |
@@ -88,8 +88,9 @@ impl DesignSpec {
         let group = task.group();
         let default = match method {
             Method::Hwasp => Place::Graph,
-            Method::Minimal => Place::Action,
             Method::Fixed => Place::Fixed,
+            // A search moves the parameter, and the plant evaluates the law.
+            Method::Minimal | Method::Cmaes | Method::Ars | Method::CmaesRl | Method::ArsRl => Place::Action,
         };
         let spec = Self {
             placement: s.choice("placement", Place::ALL).unwrap_or(default),

@@ -55,7 +55,7 @@ impl Layers {
             return;
         };
         for (name, Entry { key, mut node }) in methods {
-            // Only the three methods have a layer; the rest is refused whatever it holds.
+            // Only methods have a layer; the rest is refused whatever it holds.
             if super::Method::from_name(&name).is_some() {
                 retag(&mut node, self.sources.len());
                 self.sources.push(self.sources[0].clone());

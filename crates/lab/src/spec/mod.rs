@@ -24,6 +24,7 @@ mod learner;
 mod names;
 mod noise;
 mod quantity;
+mod search;
 mod section;
 mod source;
 mod suggest;
@@ -41,6 +42,7 @@ pub use fault::{Excerpt, Fault, SpecErrors};
 pub use layers::{LONGEST_FILE, Layers};
 pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec};
 pub use noise::{EffortSpec, NoiseSpec};
+pub use search::{ArsSpec, ArsVariant, CmaesSpec, Score, SearchSpec};
 pub use task::{
     BarProblem, GroupSpec, InterfaceKind, MOST_SEGMENTS, MOST_STEPS, MassSpringSpec, Problem, ProblemKind,
     ReachProblem, RewardKind, StiffnessProblem, TaskSpec,
@@ -60,6 +62,26 @@ named! {
         Minimal = "minimal",
         /// The design stays as it begins.
         Fixed = "fixed",
+        /// CMA-ES over controller and design.
+        Cmaes = "cmaes",
+        /// Augmented random search over controller and design.
+        Ars = "ars",
+        /// CMA-ES over the design; every candidate trains a controller of its own.
+        CmaesRl = "cmaes-rl",
+        /// Augmented random search over the design; every candidate trains a controller of its own.
+        ArsRl = "ars-rl",
+    }
+}
+
+impl Method {
+    /// Whether it searches without a gradient of the whole.
+    pub fn searches(self) -> bool {
+        matches!(self, Self::Cmaes | Self::Ars | Self::CmaesRl | Self::ArsRl)
+    }
+
+    /// Whether every candidate of its search trains a controller of its own.
+    pub fn trains_inside(self) -> bool {
+        matches!(self, Self::CmaesRl | Self::ArsRl)
     }
 }
 
@@ -69,7 +91,7 @@ named! {
 /// |---|---|---|---|
 /// | `name` | required | what plots and folders call it | 1 to 100 characters |
 /// | `description` | "" | what it is | up to 2000 characters |
-/// | `method` | "hwasp" | `hwasp`, `minimal` or `fixed` | |
+/// | `method` | "hwasp" | `hwasp`, `minimal`, `fixed`, `cmaes`, `ars`, `cmaes-rl` or `ars-rl` | |
 /// | `seed` | 0 | root of all random streams | 0 to 2^63 - 1 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spec {
@@ -95,6 +117,12 @@ pub struct Spec {
     pub ppo: PpoSpec,
     /// What estimates values.
     pub baseline: BaselineSpec,
+    /// How the candidates of a search are scored.
+    pub search: SearchSpec,
+    /// Settings of CMA-ES.
+    pub cmaes: CmaesSpec,
+    /// Settings of augmented random search.
+    pub ars: ArsSpec,
     /// How long, in which portions.
     pub train: TrainSpec,
 }
@@ -161,20 +189,40 @@ fn read_spec<'r>(reader: &'r Reader<'r>, table: &'r Table, method: Method) -> Op
                     the command line sets keys of the chosen method: --set ppo.clip_ratio=0.1";
         reader.fault(Some(&node.origin), "methods", "methods cannot be set here".into(), Some(hint.into()));
     }
-    let sections = ["task", "controller", "design", "noise", "learner", "ppo", "baseline", "train"]
-        .map(|name| reader.section(&mut root, name));
+    let sections =
+        ["task", "controller", "design", "noise", "learner", "ppo", "baseline", "search", "cmaes", "ars", "train"]
+            .map(|name| reader.section(&mut root, name));
     root.finish();
-    let [task, controller, design, noise, learner, ppo, baseline, train] = sections;
+    let [task, controller, design, noise, learner, ppo, baseline, search, cmaes, ars, train] = sections;
 
     let learner = LearnerSpec::read(learner);
     let baseline = BaselineSpec::read(baseline);
     let task = TaskSpec::read(task);
     let train = TrainSpec::read(train, task.as_ref().map_or(MOST_STEPS, |task| task.horizon));
     let ppo = PpoSpec::read(ppo, &train);
+    let search = SearchSpec::read(search, &train);
+    let cmaes = CmaesSpec::read(cmaes, method);
+    let ars = ArsSpec::read(ars, method);
     // The rest cannot be judged without a task.
     let task = task?;
     let controller = ControllerSpec::read(controller, task.observations());
     let design = DesignSpec::read(design, method, &task);
     let noise = NoiseSpec::read(noise, &task, &design);
-    Some(Spec { name, description, method, seed, task, controller, design, noise, learner, ppo, baseline, train })
+    Some(Spec {
+        name,
+        description,
+        method,
+        seed,
+        task,
+        controller,
+        design,
+        noise,
+        learner,
+        ppo,
+        baseline,
+        search,
+        cmaes,
+        ars,
+        train,
+    })
 }

@@ -16,6 +16,7 @@ pub const MOST_ROWS: usize = 10_000_000;
 /// | `episode_steps` | 200 | training episodes are cut to this | 1 to the horizon |
 /// | `evaluation_episodes` | 1000 | episodes of an evaluation | 1 to 1 000 000 |
 /// | `evaluation_seed` | 1 000 003 | root of their start states | 0 to 2^63 - 1 |
+/// | `nominal_steps` | 0 | what the authors' plots count per iteration (`plot --axis nominal`); 0: the real steps | 0 to 1e12 |
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TrainSpec {
     /// Simulator steps of the whole training.
@@ -28,6 +29,8 @@ pub struct TrainSpec {
     pub evaluation_episodes: usize,
     /// Root seed of an evaluation's start states.
     pub evaluation_seed: u64,
+    /// What the authors' plots count per iteration; 0 for the real steps.
+    pub nominal_steps: u64,
 }
 
 impl TrainSpec {
@@ -44,6 +47,7 @@ impl TrainSpec {
             episode_steps: s.count("episode_steps", horizon.min(200), 1..=100_000),
             evaluation_episodes: s.count("evaluation_episodes", 1000, 1..=1_000_000),
             evaluation_seed: s.integer("evaluation_seed", 1_000_003, 0..=i64::MAX as u64),
+            nominal_steps: s.integer("nominal_steps", 0, 0..=1_000_000_000_000),
         };
         let rows = spec.rows();
         spec.env_steps = s.integer("env_steps", 4_000_000.max(rows as u64), 1..=1_000_000_000_000);

@@ -27,7 +27,9 @@ pub(super) fn times(product: &mut [f64], left: &[f64], right: &[f64], m: usize, 
 pub(super) fn add_outer(c: &mut [f64], decay: f64, weights: &[f64], rows: &[f64], n: usize) {
     let mut weighted = rows.to_vec();
     for (row, &w) in weighted.chunks_exact_mut(n).zip(weights) {
-        row.iter_mut().for_each(|v| *v *= w);
+        for v in row.iter_mut() {
+            *v *= w;
+        }
     }
     for (i, row) in c.chunks_exact_mut(n).enumerate() {
         vectorised(

@@ -9,6 +9,7 @@ use hwasp_core::{
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};
+use hwasp_tasks::pendulum::{Pendulum, PendulumError, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachError, ReachSettings};
 use thiserror::Error;
 
@@ -26,6 +27,9 @@ pub enum AssembleError {
     /// The reach problem's settings.
     #[error(transparent)]
     Reach(#[from] ReachError),
+    /// The pendulum's settings.
+    #[error(transparent)]
+    Pendulum(#[from] PendulumError),
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
@@ -171,6 +175,11 @@ fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
             let world = World { law: reach.law(), make: Arc::new(reach.clone()) };
             Ok(Problems { training: world.clone(), deployment: world, optimum: vec![Some(reach.optimum())] })
         }
+        Problem::Pendulum => {
+            let pendulum = Pendulum::new(&PendulumSettings { horizon: spec.task.horizon, initial })?;
+            let world = World { law: pendulum.law(), make: Arc::new(pendulum) };
+            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
+        }
     }
 }
 
@@ -210,9 +219,13 @@ fn initial(design: &DesignSpec, spec: &Spec) -> Initial {
 }
 
 fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
-    // A fixed parameter keeps the value that a free one would have begun with.
+    // A fixed parameter keeps the value that a free one would have begun with; a given one to the last bit, which the
+    // way through the squash and back would not.
     let space = law.design();
-    let first = space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0)));
+    let first = match initial(&spec.design, spec) {
+        Initial::Value(value) => vec![value; space.len()],
+        Initial::Logit { .. } => space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0))),
+    };
     let placements = first.iter().enumerate().map(|(i, &value)| match spec.design.place_of(i) {
         Place::Graph => Placement::Graph,
         Place::Action => Placement::Action,

@@ -69,6 +69,7 @@ fn keys_of_another_problem() {
         "name = 'my'\n[task]\nproblem = 'stiffness'\ninterface = 'rigid'\nspring = '20 N/m'\n",
         "name = 'my'\n[task]\nproblem = 'bar-length'\nbar = '0.1 m'\ninterface = 'rigid'\neffort_clip = '5 N'\n",
         "name = 'my'\n[task]\nproblem = 'reach'\nsegments = 3\n",
+        "name = 'my'\n[task]\nproblem = 'pendulum'\nspring = '20 N/m'\ngoal = '0.2 m'\n[noise]\neffort = '3 N'\n",
         "name = 'my'\n[task]\nproblem = 'bar-length'\ninterface = 'rigid'\n[noise]\neffort = '3 N'\n",
     ]
     .map(|text| faults(text, None));
@@ -141,7 +142,7 @@ fn names_and_paths() {
     };
     let told = [
         told("mas-spring"),
-        told("pendulum"),
+        told("cartpole"),
         told(&folder.join("absent.toml").display().to_string()),
         told(&latin.display().to_string()),
         told(&large.display().to_string()),

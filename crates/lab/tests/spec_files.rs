@@ -160,6 +160,7 @@ fn almost_toml() -> impl Strategy<Value = String> {
             "'stiffness'",
             "'bar-length'",
             "'reach'",
+            "'pendulum'",
             "'action'",
             "'3 N'",
             "'0.3'",

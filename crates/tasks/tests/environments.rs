@@ -4,6 +4,7 @@
 
 use hwasp_core::check_env;
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
+use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
 
 #[test]
@@ -30,5 +31,11 @@ fn mass_spring_keeps_the_invariants() {
 #[test]
 fn reach_keeps_the_invariants() {
     let problem = Reach::new(ReachSettings::default()).unwrap();
+    check_env(&problem, &problem.law(), false).unwrap();
+}
+
+#[test]
+fn pendulum_keeps_the_invariants() {
+    let problem = Pendulum::new(&PendulumSettings::default()).unwrap();
     check_env(&problem, &problem.law(), false).unwrap();
 }

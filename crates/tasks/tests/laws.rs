@@ -5,6 +5,7 @@
 use hwasp_core::{DesignError, Initial, Law};
 use hwasp_diff::{GradCheckSettings, gradcheck};
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};
+use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Gear, Reach, ReachError, ReachSettings};
 use proptest::prelude::*;
 
@@ -32,6 +33,7 @@ proptest! {
             (soft_bar(count), vec![motor, y1, v1, y2, v2]),
             (MassSpring::bar(paper(count), Interface::Rigid).unwrap().law(), vec![motor, y1, v1, y2, v2]),
             (Reach::new(ReachSettings::default()).unwrap().law(), vec![motor / 5.0, y1]),
+            (Pendulum::new(&PendulumSettings::default()).unwrap().law(), vec![0.4 * motor, y1, v1]),
         ];
         for (law, columns) in laws {
             let design: Vec<f64> = (0..law.design().len())

@@ -21,6 +21,7 @@ pub const EXPERIMENTS: &[(&str, &str)] = embedded![
     "bar-length",
     "bar-length-50",
     "reach",
+    "pendulum",
     "paper/mass-spring",
     "paper/mass-spring-50",
     "paper/bar-length",

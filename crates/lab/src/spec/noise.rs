@@ -14,7 +14,7 @@ use super::values::with_unit;
 pub struct EffortSpec {
     /// In SI.
     pub value: f64,
-    /// Force, length or speed.
+    /// Force, length, speed or torque.
     pub dimension: Dimension,
 }
 
@@ -23,7 +23,7 @@ pub struct EffortSpec {
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
 /// | `command` | 0.3 | of the motor command, as a fraction of its range | 1e-6 to 10 |
-/// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
+/// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s", pendulum: "0.5 N·m") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
 /// | `design` | 0.3 | of a parameter in the action, as a fraction of its range | 1e-6 to 10 |
 /// | `command_final`, `effort_final`, `design_final` | "none" | annealed geometrically to this | as above |
 /// | `anneal` | [0.25, 0.75] | begin and end of annealing, fractions of training | 0 to 1, in order |
@@ -82,7 +82,11 @@ impl NoiseSpec {
 
 fn read_effort(s: &mut Section<'_>, task: &TaskSpec) -> (Option<EffortSpec>, Option<EffortSpec>) {
     let dimension = task.effort_dimension();
-    let default = if dimension == Dimension::Force { 3.0 } else { 0.1 };
+    let default = match dimension {
+        Dimension::Force => 3.0,
+        Dimension::Torque => 0.5,
+        _ => 0.1,
+    };
     let range = 1e-6..=1e4;
     let value = s.quantity("effort", dimension, default, &range);
     let end = s.optional_quantity("effort_final", dimension, 0.01 * default, &range);
@@ -93,7 +97,7 @@ fn read_effort(s: &mut Section<'_>, task: &TaskSpec) -> (Option<EffortSpec>, Opt
 /// effort may even have another unit. It still has to be a quantity.
 fn skim(s: &mut Section<'_>, key: &'static str) -> Option<EffortSpec> {
     let node = s.take(key)?;
-    let any = [Dimension::Force, Dimension::Length, Dimension::Speed];
+    let any = [Dimension::Force, Dimension::Length, Dimension::Speed, Dimension::Torque];
     let fits = match &node.value {
         Value::Text(text) => text == "none" || any.iter().any(|&d| parse_quantity(text, d).is_ok()),
         _ => false,

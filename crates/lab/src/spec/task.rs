@@ -22,6 +22,8 @@ named! {
         BarLength = "bar-length",
         /// The gear of a point on a rail, `reach`.
         Reach = "reach",
+        /// The gear of a pendulum that has to be swung up, `pendulum`.
+        Pendulum = "pendulum",
     }
 }
 
@@ -49,8 +51,8 @@ named! {
 ///
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
-/// | `problem` | required | `stiffness`, `bar-length` or `reach` | |
-/// | `horizon` | 1000 (reach: 30) | steps of an episode | 1 to 100 000 |
+/// | `problem` | required | `stiffness`, `bar-length`, `reach` or `pendulum` | |
+/// | `horizon` | 1000 (reach: 30, pendulum: 200) | steps of an episode | 1 to 100 000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TaskSpec {
     /// Steps of an evaluation episode, and the most of a training one.
@@ -70,6 +72,8 @@ pub enum Problem {
     BarLength(BarProblem),
     /// The gear is the design.
     Reach(ReachProblem),
+    /// The gear is the design; the rest is the classic problem, and there is nothing to set.
+    Pendulum,
 }
 
 /// What both mass-spring problems have.
@@ -184,18 +188,24 @@ impl TaskSpec {
             Problem::Stiffness(_) => ProblemKind::Stiffness,
             Problem::BarLength(_) => ProblemKind::BarLength,
             Problem::Reach(_) => ProblemKind::Reach,
+            Problem::Pendulum => ProblemKind::Pendulum,
         }
     }
 
     /// Numbers that the controller sees.
     pub fn observations(&self) -> usize {
-        if self.kind() == ProblemKind::Reach { 1 } else { 2 }
+        match self.kind() {
+            ProblemKind::Reach => 1,
+            ProblemKind::Stiffness | ProblemKind::BarLength => 2,
+            ProblemKind::Pendulum => 3,
+        }
     }
 
     /// What the law hands to the plant.
     pub fn effort_dimension(&self) -> Dimension {
         match &self.problem {
             Problem::Reach(_) => Dimension::Speed,
+            Problem::Pendulum => Dimension::Torque,
             Problem::BarLength(bar) if bar.interface == InterfaceKind::Rigid => Dimension::Length,
             _ => Dimension::Force,
         }
@@ -214,17 +224,23 @@ impl TaskSpec {
                 GroupSpec { name: "length", dimension: Dimension::Length, count: p.base.segments, lo: 0.0, hi }
             }
             Problem::Reach(_) => GroupSpec { name: "gear", dimension: Dimension::None, count: 1, lo: 0.1, hi: 2.0 },
+            Problem::Pendulum => GroupSpec { name: "gear", dimension: Dimension::None, count: 1, lo: 0.5, hi: 2.0 },
         }
     }
 
     /// Reads the table; what is wrong in it becomes the default. None where the problem itself is not known.
     pub(super) fn read(mut s: Section<'_>) -> Option<Self> {
         if s.origin("problem").is_none() {
-            let hint = "set `problem` in [task] to \"stiffness\", \"bar-length\" or \"reach\"";
+            let hint = "set `problem` in [task] to \"stiffness\", \"bar-length\", \"reach\" or \"pendulum\"";
             s.clash("problem", "task.problem is missing".into(), hint);
         }
         let kind = s.choice("problem", ProblemKind::ALL)?;
-        let horizon = s.count("horizon", if kind == ProblemKind::Reach { 30 } else { 1000 }, 1..=MOST_STEPS);
+        let usual = match kind {
+            ProblemKind::Stiffness | ProblemKind::BarLength => 1000,
+            ProblemKind::Reach => 30,
+            ProblemKind::Pendulum => 200,
+        };
+        let horizon = s.count("horizon", usual, 1..=MOST_STEPS);
         refuse_foreign(&mut s, kind);
         let problem = match kind {
             ProblemKind::Stiffness => Problem::Stiffness(StiffnessProblem {
@@ -236,6 +252,7 @@ impl TaskSpec {
             ProblemKind::Reach => {
                 Problem::Reach(ReachProblem { goal: s.quantity("goal", Dimension::Length, 0.25, &(-1.0..=1.0)) })
             }
+            ProblemKind::Pendulum => Problem::Pendulum,
         };
         s.finish();
         Some(Self { horizon, problem })
@@ -282,10 +299,17 @@ fn refuse_foreign(s: &mut Section<'_>, kind: ProblemKind) {
     const SPRINGS: &[&str] = &["stiffness_total_max", "bar"];
     const BAR: &[&str] = &["interface", "length_total_max", "spring", "interface_stiffness", "interface_damping"];
     const BOTH: &[&str] = &["segments", "reward", "effort_clip", "mass_1", "mass_2", "motor_limit"];
+    const GOAL: &[&str] = &["goal"];
     let foreign: &[(&[&'static str], &str)] = match kind {
         ProblemKind::Stiffness => &[(BAR, "bar-length")],
         ProblemKind::BarLength => &[(SPRINGS, "stiffness")],
         ProblemKind::Reach => &[(SPRINGS, "stiffness"), (BAR, "bar-length"), (BOTH, "stiffness or bar-length")],
+        ProblemKind::Pendulum => &[
+            (SPRINGS, "stiffness"),
+            (BAR, "bar-length"),
+            (BOTH, "stiffness or bar-length"),
+            (GOAL, "stiffness, bar-length or reach"),
+        ],
     };
     for (keys, owner) in foreign {
         for key in *keys {

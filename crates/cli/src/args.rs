@@ -125,6 +125,9 @@ pub(crate) struct TrainArgs {
     /// The run folder [default: a new one under runs/]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
+    /// Write the learning curve for TensorBoard as well, into tensorboard/ of the run folder
+    #[arg(long)]
+    pub(crate) tensorboard: bool,
     /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -16,6 +16,7 @@ mod search;
 pub mod spec;
 pub mod stats;
 mod summary;
+mod tensorboard;
 mod train;
 
 pub use assemble::{AssembleError, Assembly, Problems, World};
@@ -25,4 +26,5 @@ pub use observer::{Event, Observer, ObserverError};
 pub use policy_file::{PolicyFileError, read_policy, write_policy};
 pub use run_folder::{Provenance, RunError, RunFolder, SavedRun};
 pub use summary::{DesignGroupSummary, Summary};
+pub use tensorboard::{TensorBoard, TensorBoardError};
 pub use train::{TRAILING, TrainError, Trained, train};

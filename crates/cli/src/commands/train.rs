@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_lab::{Observer, Provenance, RunFolder, train};
+use hwasp_lab::{Observer, Provenance, RunFolder, TensorBoard, train};
 
 use super::{executor, experiment};
 use crate::args::TrainArgs;
@@ -24,6 +24,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let provenance = Provenance::new(typed, args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
     let mut folder = RunFolder::create(&path, &spec, &provenance).map_err(Failure::input)?;
+    let mut board = args.tensorboard.then(|| TensorBoard::create(&path.join("tensorboard"))).transpose()?;
 
     let stop = Arc::new(AtomicBool::new(false));
     let signal = Arc::clone(&stop);
@@ -36,6 +37,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
 
     let mut progress = Progress::new(&assembly);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];
+    observers.extend(board.as_mut().map(|board| board as &mut dyn Observer));
     if !args.quiet {
         output::remark(&report::beginning(&spec, &path));
         observers.push(&mut progress);

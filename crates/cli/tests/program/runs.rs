@@ -62,6 +62,20 @@ fn quiet_is_quiet() {
 }
 
 #[test]
+fn tensorboard_is_written_if_asked_for() {
+    let sandbox = Sandbox::new("tensorboard");
+    sandbox
+        .transcript(&[&format!("{TINY} --quiet --out with --tensorboard"), &format!("{TINY} --quiet --out without")]);
+    let files = fs::read_dir(sandbox.path("with/tensorboard")).unwrap();
+    let names: Vec<_> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+    assert!(names.len() == 1 && names[0].starts_with("events.out.tfevents."), "{names:?}");
+    assert!(!sandbox.path("without/tensorboard").exists());
+    // The folder beside the other files changes nothing for those who read them.
+    assert_eq!(sandbox.read("with/policy.safetensors"), sandbox.read("without/policy.safetensors"));
+    assert!(sandbox.run("eval with").status.success());
+}
+
+#[test]
 fn plots() {
     let sandbox = Sandbox::with_run("plot");
     sandbox.run(&format!("{TINY} --quiet --seed 1 --out other"));

@@ -145,7 +145,7 @@ impl Cmaes {
         if scored < positive.len() {
             positive[scored..].fill(0.0);
             let sum: f64 = positive.iter().sum();
-            for w in &mut *positive {
+            for w in positive.iter_mut() {
                 *w /= sum;
             }
         }

@@ -27,7 +27,7 @@ pub(super) fn times(product: &mut [f64], left: &[f64], right: &[f64], m: usize, 
 pub(super) fn add_outer(c: &mut [f64], decay: f64, weights: &[f64], rows: &[f64], n: usize) {
     let mut weighted = rows.to_vec();
     for (row, &w) in weighted.chunks_exact_mut(n).zip(weights) {
-        for v in row.iter_mut() {
+        for v in row {
             *v *= w;
         }
     }
@@ -134,7 +134,7 @@ mod tests {
                 assert!((back - c[i * n + j]).abs() < 1e-12, "{i} {j}");
             }
         }
-        assert_eq!(eigen(&vec![f64::NAN; 9], 3), None);
+        assert_eq!(eigen(&[f64::NAN; 9], 3), None);
     }
 
     /// Where an array starts in memory changes from run to run; results must not.

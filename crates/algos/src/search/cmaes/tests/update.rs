@@ -9,7 +9,8 @@ fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{found} is not {expected}");
 }
 
-/// The weights, `μ_eff` and rates that pycma 4.5.0 has for ten dimensions; c_σ and `d_σ` by hand, where it has left the tutorial.
+/// The weights, `μ_eff` and rates that pycma 4.5.0 has for ten dimensions; `c_σ` and `d_σ` by hand, as it has left the
+/// tutorial there.
 #[test]
 fn table_1_for_ten_dimensions() {
     let config = CmaesConfig::default();

@@ -23,6 +23,8 @@ const LAST_SEED: u64 = i64::MAX as u64;
 const MOST_STEPS: u64 = 1_000_000_000_000;
 /// The most episodes of an evaluation; `train.evaluation_episodes` has the same limit.
 const MOST_EPISODES: u64 = 1_000_000;
+/// The most seeds of a comparison.
+const MOST_SEEDS: u64 = 1000;
 /// The most threads: far more than help.
 const MOST_THREADS: u64 = 1024;
 
@@ -45,6 +47,8 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
+    /// Train methods against each other, several seeds each under one budget, and say which is better
+    Compare(CompareArgs),
     /// Check an experiment file and report all that is wrong with it at once
     Check(ExperimentArgs),
     /// List the experiments that come with the program
@@ -186,6 +190,36 @@ pub(crate) struct PlotArgs {
     /// A line above it [default: none]
     #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct CompareArgs {
+    /// A name from `hwasp list`, or the path of a TOML file
+    pub(crate) experiment: String,
+    /// Methods, separated by commas; fixed:middle, fixed:random and fixed:"2 N/m" say where hardware stays that is fixed
+    #[arg(long, value_delimiter = ',', default_value = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed")]
+    pub(crate) methods: Vec<String>,
+    /// Seeds of each method, from 0
+    #[arg(long, default_value = "5", allow_negative_numbers = true, value_parser = whole(1..=MOST_SEEDS))]
+    pub(crate) seeds: u64,
+    /// Real simulator steps of each training [default: what the experiment says]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
+    pub(crate) env_steps: Option<u64>,
+    /// Set one value of the experiment, such as `ppo.clip_ratio=0.1`; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// The training return whose steps are counted [default: nine tenths of the way from the worst to the best]
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) threshold: Option<f64>,
+    /// Cells trained at once; they do not change the result [default: the processors there are]
+    #[arg(long, allow_negative_numbers = true, value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// The folder; where it holds a part of this comparison, that is continued [default: runs/compare-EXPERIMENT]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, clap::Args)]

@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod failure;
+mod grid_progress;
 mod output;
 mod progress;
 mod report;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
         Command::Train(train) => commands::train::run(train),
         Command::Eval(eval) => commands::eval::run(eval),
         Command::Plot(plot) => commands::plot::run(plot),
+        Command::Compare(compare) => commands::compare::run(compare),
         Command::Check(check) => commands::check::run(check),
         Command::List => commands::list::run(),
         Command::Graph(graph) => commands::graph::run(graph),

@@ -80,7 +80,7 @@ impl Progress {
 }
 
 /// A time such as `42 s`, `3 min 5 s` or `2 h 10 min`.
-fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     let s = seconds.ceil() as u64;
     match s {
         0..60 => format!("{s} s"),

@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::{MetricsError, MetricsTable, MetricsWriter};
 use crate::observer::{Event, Observer, ObserverError};
-use crate::plot::{Curve, PanelText, PlotError, PlotOptions, RETURN, XAxis, curves};
+use crate::plot::{Curve, PlotError, PlotOptions, XAxis, curves};
 use crate::policy_file::{LARGEST_POLICY, PolicyFileError, read_policy, write_policy};
 use crate::spec::{self, Layers, Spec, SpecErrors};
 use crate::summary::Summary;
@@ -319,26 +319,7 @@ impl SavedRun {
 
     /// Axis texts, units and known optima for its picture.
     pub fn plot_options(&self, title: String) -> PlotOptions {
-        let mut panels =
-            vec![PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }];
-        let groups = self.assembly.policy.space().groups();
-        for ((column, group), optimum) in
-            self.assembly.total_names().into_iter().zip(groups).zip(&self.assembly.problem.optimum)
-        {
-            let label = if group.count == 1 { group.name.clone() } else { format!("total {}", group.name) };
-            // The curve shows the design as trained; the optimum is of the design as built.
-            let same = self.trains_what_is_built();
-            let optimum = optimum.filter(|_| same);
-            panels.push(PanelText { column, label, unit: group.dimension.si().into(), optimum });
-        }
-        PlotOptions { title, panels, ..PlotOptions::default() }
-    }
-
-    /// Whether the design as trained is the design to build.
-    fn trains_what_is_built(&self) -> bool {
-        let space = self.assembly.policy.space();
-        let middle: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
-        self.assembly.problem.training.law.as_built(&middle) == middle
+        self.assembly.plot_options(title)
     }
 }
 

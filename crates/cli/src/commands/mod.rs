@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub(crate) mod check;
+pub(crate) mod compare;
 pub(crate) mod eval;
 pub(crate) mod graph;
 pub(crate) mod list;
@@ -9,6 +10,8 @@ pub(crate) mod train;
 
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_lab::spec::{self, Spec};
@@ -44,4 +47,15 @@ fn saved_run(path: &Path) -> Result<SavedRun, Failure> {
 
 fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
     if threads.get() == 1 { Ok(Box::new(Serial)) } else { Ok(Box::new(Threads::new(threads.get())?)) }
+}
+
+/// The first Ctrl-C or SIGTERM sets `stop`, the second ends the program.
+fn stop_on_signal(stop: &Arc<AtomicBool>) -> Result<(), ctrlc::Error> {
+    let signal = Arc::clone(stop);
+    ctrlc::set_handler(move || {
+        // The second time there is nobody to wait for.
+        if signal.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
 }

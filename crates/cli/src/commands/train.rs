@@ -2,11 +2,11 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use hwasp_lab::{Observer, Provenance, RunFolder, TensorBoard, train};
 
-use super::{executor, experiment};
+use super::{executor, experiment, stop_on_signal};
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -27,13 +27,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let mut board = args.tensorboard.then(|| TensorBoard::create(&path.join("tensorboard"))).transpose()?;
 
     let stop = Arc::new(AtomicBool::new(false));
-    let signal = Arc::clone(&stop);
-    ctrlc::set_handler(move || {
-        // The second time there is nobody to wait for.
-        if signal.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })?;
+    stop_on_signal(&stop)?;
 
     let mut progress = Progress::new(&assembly);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];

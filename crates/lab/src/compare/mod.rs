@@ -224,9 +224,14 @@ impl Cell {
         }
     }
 
+    /// The experiment's name.
+    pub fn experiment(&self) -> String {
+        self.assembly.spec().name.clone()
+    }
+
     /// Axis texts, units and known optima for pictures of such runs.
-    pub fn plot_options(&self) -> Result<PlotOptions, CompareError> {
-        Ok(SavedRun::open(&self.path)?.plot_options(String::new()))
+    pub fn plot_options(&self) -> PlotOptions {
+        self.assembly.plot_options(String::new())
     }
 }
 

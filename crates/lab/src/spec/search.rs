@@ -49,7 +49,7 @@ impl ArsVariant {
 /// | `episodes` | 4 | episodes of a candidate (`cmaes` and `ars`) | 1 to 100 000 |
 /// | `score` | "discounted_return" | their mean `return` or `discounted_return` | |
 /// | `noise` | false | whether candidates act with noise, whose standard deviations are then searched too | |
-/// | `inner_env_steps` | 100 000 | steps of a candidate's own training (`cmaes-rl` and `ars-rl`) | one iteration to 1e12 |
+/// | `inner_env_steps` | a fortieth of `train.env_steps` | steps of a candidate's own training (`cmaes-rl` and `ars-rl`) | one iteration to 1e12 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SearchSpec {
     /// Episodes of a candidate.
@@ -90,7 +90,7 @@ pub struct CmaesSpec {
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
 /// | `variant` | ars: "v2-t", ars-rl: "v1-t" | `v1`, `v1-t`, `v2` or `v2-t` | |
-/// | `directions` | 32 | directions of a generation, each tried both ways | 1 to 100 000 |
+/// | `directions` | ars: 32, ars-rl: 4 | directions of a generation, each tried both ways | 1 to 100 000 |
 /// | `top` | with -t half of them, else all | the best of them, which count | 1 to `directions` |
 /// | `step_size` | 0.05 | length of a step | 1e-9 to 1e3 |
 /// | `noise_std` | 0.1 | how far candidates are from the centre | 1e-9 to 1e3 |
@@ -118,7 +118,7 @@ impl SearchSpec {
             episodes: s.count("episodes", 4, 1..=100_000),
             score: s.choice("score", Score::ALL).unwrap_or(Score::DiscountedReturn),
             noise: s.flag("noise", false),
-            inner_env_steps: s.integer("inner_env_steps", rows.max(100_000), 1..=1_000_000_000_000),
+            inner_env_steps: s.integer("inner_env_steps", rows.max(train.env_steps / 40), 1..=1_000_000_000_000),
         };
         let sound = s.reader.sound(&["search.inner_env_steps", "train.episodes_per_iteration", "train.episode_steps"]);
         if spec.inner_env_steps < rows && sound {
@@ -158,7 +158,7 @@ impl ArsSpec {
     pub(super) fn read(mut s: Section<'_>, method: Method) -> Self {
         let default = if method == Method::ArsRl { ArsVariant::V1t } else { ArsVariant::V2t };
         let variant = s.choice("variant", ArsVariant::ALL).unwrap_or(default);
-        let directions = s.count("directions", 32, 1..=MOST_CANDIDATES);
+        let directions = s.count("directions", if method == Method::ArsRl { 4 } else { 32 }, 1..=MOST_CANDIDATES);
         let all = if variant.truncates() { directions.div_ceil(2) } else { directions };
         let spec = Self {
             variant,

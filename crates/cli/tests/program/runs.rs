@@ -114,3 +114,21 @@ fn an_interrupted_training_keeps_what_it_has() {
     assert_eq!(summary["stopped"], true);
     assert!(sandbox.run("eval run").status.success());
 }
+
+/// Contenders that are none, one named twice, a comparison, and the same again, which trains nothing.
+#[test]
+fn a_comparison() {
+    let sandbox = Sandbox::new("compare");
+    let small = "compare reach --seeds 2 --env-steps 12000 --set train.evaluation_episodes=5 --threads 1 --out both";
+    let output = sandbox.transcript(&[
+        "compare reach --methods hwsap",
+        "compare reach --methods hwasp,hwasp",
+        "compare reach --methods cmaes --env-steps 300",
+        &format!("{small} --methods hwasp,fixed:middle --quiet"),
+        &format!("{small} --methods hwasp,fixed:middle --set ppo.clip_ratio=0.1"),
+    ]);
+    insta::assert_snapshot!(output);
+    assert!(String::from_utf8_lossy(&sandbox.read("both/table.md")).contains("| fixed:middle | 2 |"));
+    let again = sandbox.run(&format!("{small} --methods hwasp,fixed:middle"));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("4 cells, 4 of them there already"));
+}

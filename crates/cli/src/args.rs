@@ -23,8 +23,8 @@ const LAST_SEED: u64 = i64::MAX as u64;
 const MOST_STEPS: u64 = 1_000_000_000_000;
 /// The most episodes of an evaluation; `train.evaluation_episodes` has the same limit.
 const MOST_EPISODES: u64 = 1_000_000;
-/// The most seeds of a comparison.
-const MOST_SEEDS: u64 = 1000;
+/// The most seeds of a comparison: a picture shows a thousand runs.
+const MOST_SEEDS: u64 = 100;
 /// The most threads: far more than help.
 const MOST_THREADS: u64 = 1024;
 
@@ -49,6 +49,8 @@ pub(crate) enum Command {
     Plot(PlotArgs),
     /// Train methods against each other, several seeds each under one budget, and say which is better
     Compare(CompareArgs),
+    /// Repeat a toy figure or table of the paper with the authors' settings, their numbers beside ours
+    Reproduce(ReproduceArgs),
     /// Check an experiment file and report all that is wrong with it at once
     Check(ExperimentArgs),
     /// List the experiments that come with the program
@@ -220,6 +222,21 @@ pub(crate) struct CompareArgs {
     /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReproduceArgs {
+    /// fig3-10, fig3-50, figs-bar-10, figs-bar-50 or table1
+    pub(crate) figure: String,
+    /// Two seeds at a fifth of the steps: a minute or two, and the same shape
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Cells trained at once; they do not change the result [default: the processors there are]
+    #[arg(long, allow_negative_numbers = true, value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// The folder; a part that is there is continued [default: runs/reproduce-FIGURE]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]

@@ -21,6 +21,7 @@ fn main() -> ExitCode {
         Command::Eval(eval) => commands::eval::run(eval),
         Command::Plot(plot) => commands::plot::run(plot),
         Command::Compare(compare) => commands::compare::run(compare),
+        Command::Reproduce(reproduce) => commands::reproduce::run(reproduce),
         Command::Check(check) => commands::check::run(check),
         Command::List => commands::list::run(),
         Command::Graph(graph) => commands::graph::run(graph),

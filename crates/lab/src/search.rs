@@ -30,7 +30,7 @@ struct Scored {
 struct Problem<'a> {
     assembly: &'a Assembly,
     sampler: Sampler,
-    /// The controller's part of the start, for what a search over the design does not move.
+    /// The policy's parameters at the start.
     start: Vec<f32>,
     filter: Option<StateFilter>,
 }

@@ -74,13 +74,15 @@ fn a_killed_comparison_goes_on_and_ends_with_the_same_figures() {
     let first = Counter { stop_after: Some(2), ..Counter::default() };
     let finished = run(&grid, &folder, &first).unwrap().len();
     assert!((1..9).contains(&finished), "{finished}");
-    // A kill leaves a cell without a summary, or an empty folder.
+    // A kill leaves a cell without a summary, or a folder without anything whole.
     let mut cells: Vec<_> = fs::read_dir(folder.join("cells")).unwrap().map(|e| e.unwrap().path()).collect();
     cells.sort();
     let done = cells.iter().find(|cell| cell.join("summary.json").exists()).unwrap();
     fs::remove_file(done.join("summary.json")).unwrap();
     let never = grid.cells(&folder).unwrap().into_iter().map(|cell| cell.path).find(|path| !path.exists());
-    fs::create_dir(never.unwrap()).unwrap();
+    let never = never.unwrap();
+    fs::create_dir(&never).unwrap();
+    fs::write(never.join(".experiment.toml.partial"), "name = ").unwrap();
 
     let second = Counter::default();
     let cells = run(&grid, &folder, &second).unwrap();

@@ -1,11 +1,11 @@
 //! `hwasp compare`.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use hwasp_core::{Executor, Threads};
-use hwasp_lab::compare::{CompareError, Comparison, Contender, Grid};
+use hwasp_core::Threads;
+use hwasp_lab::compare::{CellResult, CompareError, Comparison, Contender, Grid};
 use hwasp_lab::spec;
 
 use super::stop_on_signal;
@@ -27,41 +27,51 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: 0..args.seeds };
-    // Everything that was asked for is checked before the first cell begins.
-    let cells = grid.cells(&folder).map_err(Failure::input)?;
+    let experiment = run_grid(&grid, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?.0;
+    if !args.quiet {
+        output::print(&experiment)?;
+    }
+    Ok(())
+}
 
-    let stop = Arc::new(AtomicBool::new(false));
-    stop_on_signal(&stop)?;
-    let threads = args.threads.map_or_else(default_threads, std::num::NonZeroUsize::get);
-    let executor: Box<dyn Executor> = Box::new(Threads::new(threads)?);
-    let progress = GridProgress::new(args.quiet, threads);
+/// Runs a grid into a folder and writes its tables and pictures. Returns what to print, and the cells.
+pub(super) fn run_grid(
+    grid: &Grid,
+    folder: &Path,
+    threads: Option<NonZeroUsize>,
+    threshold: Option<f64>,
+    quiet: bool,
+    stop: &AtomicBool,
+) -> Result<(String, Vec<CellResult>), Failure> {
+    // Everything that was asked for is checked before the first cell begins.
+    let cells = grid.cells(folder).map_err(Failure::input)?;
+    let first = cells.first().ok_or_else(|| Failure::input("there is nothing to compare"))?;
+    let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
+    let progress = GridProgress::new(quiet, threads);
     let typed: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
-    let results = grid.run(&folder, &*executor, &typed, &progress, &stop).map_err(|error| match error {
+    let executor = Threads::new(threads)?;
+    let results = grid.run(folder, &executor, &typed, &progress, stop).map_err(|error| match error {
         CompareError::Other { .. } => Failure::input(error),
         _ => error.into(),
     })?;
     progress.finish();
     let missing = cells.len() - results.len();
+    let unfinished = || Failure::from(Unfinished { missing, folder: folder.to_owned() });
     if results.is_empty() {
-        return Err(Failure::from(Unfinished { missing, folder }));
+        return Err(unfinished());
     }
-    let experiment = cells.first().map_or(String::new(), hwasp_lab::compare::Cell::experiment);
-    let comparison = Comparison::new(&experiment, &results, args.threshold)?;
-    let options = cells.first().map(hwasp_lab::compare::Cell::plot_options).unwrap_or_default();
-    comparison.write(&folder, &results, &options)?;
-    if !args.quiet {
-        output::print(&comparison.markdown())?;
-        output::print(&format!(
-            "\n{}: table.md, table.csv, comparison.json, curves.svg, time.svg\n",
-            folder.display()
-        ))?;
+    let comparison = Comparison::new(&first.experiment(), &results, threshold)?;
+    comparison.write(folder, &results, &first.plot_options())?;
+    if missing > 0 {
+        return Err(unfinished());
     }
-    if missing > 0 { Err(Failure::from(Unfinished { missing, folder })) } else { Ok(()) }
+    let files = "table.md, table.csv, comparison.json, curves.svg, time.svg";
+    Ok((format!("{}\n{}: {files}\n", comparison.markdown(), folder.display()), results))
 }
 
 /// All that the machine has: cells do not wait for each other.
 fn default_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get)
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 /// Cells that did not come to their end.

@@ -6,6 +6,7 @@ pub(crate) mod eval;
 pub(crate) mod graph;
 pub(crate) mod list;
 pub(crate) mod plot;
+pub(crate) mod reproduce;
 pub(crate) mod train;
 
 use std::num::NonZeroUsize;
@@ -49,13 +50,15 @@ fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
     if threads.get() == 1 { Ok(Box::new(Serial)) } else { Ok(Box::new(Threads::new(threads.get())?)) }
 }
 
-/// The first Ctrl-C or SIGTERM sets `stop`, the second ends the program.
-fn stop_on_signal(stop: &Arc<AtomicBool>) -> Result<(), ctrlc::Error> {
-    let signal = Arc::clone(stop);
+/// What the first Ctrl-C or SIGTERM sets; the second ends the program. To be called once.
+fn stop_on_signal() -> Result<Arc<AtomicBool>, ctrlc::Error> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let signal = Arc::clone(&stop);
     ctrlc::set_handler(move || {
         // The second time there is nobody to wait for.
         if signal.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-    })
+    })?;
+    Ok(stop)
 }

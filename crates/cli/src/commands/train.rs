@@ -1,8 +1,6 @@
 //! `hwasp train`.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use hwasp_lab::{Observer, Provenance, RunFolder, TensorBoard, train};
 
@@ -26,8 +24,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let mut folder = RunFolder::create(&path, &spec, &provenance).map_err(Failure::input)?;
     let mut board = args.tensorboard.then(|| TensorBoard::create(&path.join("tensorboard"))).transpose()?;
 
-    let stop = Arc::new(AtomicBool::new(false));
-    stop_on_signal(&stop)?;
+    let stop = stop_on_signal()?;
 
     let mut progress = Progress::new(&assembly);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];

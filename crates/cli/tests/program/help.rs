@@ -17,8 +17,8 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let lines =
-        ["train", "eval", "plot", "compare", "check", "list", "graph"].map(|command| format!("{command} --help"));
+    let lines = ["train", "eval", "plot", "compare", "reproduce", "check", "list", "graph"]
+        .map(|command| format!("{command} --help"));
     insta::assert_snapshot!(sandbox.transcript(&lines.each_ref().map(String::as_str)));
 }
 

@@ -121,6 +121,7 @@ fn a_comparison() {
     let sandbox = Sandbox::new("compare");
     let small = "compare reach --seeds 2 --env-steps 12000 --set train.evaluation_episodes=5 --threads 1 --out both";
     let output = sandbox.transcript(&[
+        "reproduce fig4",
         "compare reach --methods hwsap",
         "compare reach --methods hwasp,hwasp",
         "compare reach --methods cmaes --env-steps 300",

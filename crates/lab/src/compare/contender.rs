@@ -3,15 +3,15 @@
 use super::CompareError;
 use crate::spec::{Layers, Method};
 
-/// A method, and where its design begins if not where the experiment says.
+/// A method, and what it sets of the experiment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contender {
     /// How tables call it: what was written.
     pub label: String,
     /// The method.
     pub method: Method,
-    /// `design.initial`.
-    initial: Option<String>,
+    /// What it sets of the experiment.
+    settings: Vec<(String, String)>,
 }
 
 impl Contender {
@@ -30,21 +30,26 @@ impl Contender {
             let hint = format!("say where the design begins, such as {name}:middle, or leave the colon out");
             return Err(CompareError::Contender { text: text.to_owned(), hint });
         }
-        // A random design is the one that the experiment draws.
-        let initial = initial.map(|initial| if initial == "random" { "logit" } else { initial }.to_owned());
-        Ok(Self { label: text.to_owned(), method, initial })
+        let contender = Self { label: text.to_owned(), method, settings: Vec::new() };
+        Ok(match initial {
+            // A random design is the one that the experiment draws.
+            Some("random") => contender.with("design.initial", "\"logit\""),
+            // Quoted, so that a number is the text that a quantity has to be.
+            Some(initial) => contender.with("design.initial", &format!("{initial:?}")),
+            None => contender,
+        })
+    }
+
+    /// The same with one value of the experiment set.
+    pub(super) fn with(mut self, key: &str, value: &str) -> Self {
+        self.settings.push((key.to_owned(), value.to_owned()));
+        self
     }
 
     /// The experiment as this contender runs it.
     pub(super) fn apply(&self, layers: Layers) -> Layers {
-        match &self.initial {
-            Some(initial) => {
-                // Quoted, so that a number is the text that a quantity has to be.
-                let quoted = format!("{initial:?}");
-                layers.with_option(format!("--methods {}", self.label), "design.initial", &quoted)
-            }
-            None => layers,
-        }
+        let typed = format!("--methods {}", self.label);
+        self.settings.iter().fold(layers, |layers, (key, value)| layers.with_option(typed.clone(), key, value))
     }
 
     /// Its label without what a folder should not be called.

@@ -6,6 +6,7 @@
 mod contender;
 mod figures;
 mod report;
+mod reproduce;
 
 use std::fs;
 use std::io;
@@ -18,6 +19,7 @@ use thiserror::Error;
 pub use contender::Contender;
 pub use figures::{Figure, MethodFigures, Pair, Reached};
 pub use report::Comparison;
+pub use reproduce::{FIGURES, PaperFigure};
 
 use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::MetricsTable;
@@ -182,8 +184,10 @@ impl Cell {
             return Ok(false);
         }
         let io = |action, source| CompareError::Io { action, path: self.path.clone(), source };
-        let empty = fs::read_dir(&self.path).map_err(|e| io("read", e))?.next().is_none();
-        if !empty && *SavedRun::open(&self.path)?.assembly().spec() != *self.assembly.spec() {
+        // A run that was killed at once has left nothing, or a file half written.
+        let mut entries = fs::read_dir(&self.path).map_err(|e| io("read", e))?;
+        let begun = entries.any(|entry| entry.is_ok_and(|e| e.path().extension().is_none_or(|x| x != "partial")));
+        if begun && *SavedRun::open(&self.path)?.assembly().spec() != *self.assembly.spec() {
             return Err(CompareError::Other { path: self.path.clone() });
         }
         if self.path.join("summary.json").is_file() {

@@ -1,0 +1,36 @@
+//! `hwasp reproduce`.
+
+use std::path::PathBuf;
+
+use hwasp_lab::compare::{FIGURES, PaperFigure};
+
+use super::compare::run_grid;
+use super::stop_on_signal;
+use crate::args::ReproduceArgs;
+use crate::failure::Failure;
+use crate::output;
+
+pub(crate) fn run(args: &ReproduceArgs) -> Result<(), Failure> {
+    let Some(figure) = PaperFigure::find(&args.figure) else {
+        let known: Vec<String> = FIGURES.iter().map(|f| format!("  {:<12} {}", f.name, f.about)).collect();
+        let message =
+            format!("`{}` is none of the paper's figures that can be reproduced:\n{}", args.figure, known.join("\n"));
+        return Err(Failure::input(message));
+    };
+    let quick = if args.quick { "-quick" } else { "" };
+    let folder =
+        args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("reproduce-{}{quick}", figure.name)));
+    output::remark(&format!("{}: {}", figure.name, figure.about));
+    let stop = stop_on_signal()?;
+    for experiment in figure.experiments {
+        let grid = figure.grid(experiment, args.quick).map_err(Failure::input)?;
+        let folder = folder.join(experiment.replace('/', "-"));
+        let (text, cells) = run_grid(&grid, &folder, args.threads, None, false, &stop)?;
+        output::print(&text)?;
+        let beside = figure.beside(experiment, &cells);
+        if !beside.is_empty() {
+            output::print(&format!("\n{beside}\n"))?;
+        }
+    }
+    Ok(())
+}

@@ -2,6 +2,8 @@
 //!
 //!     cmaes_evaluations FUNCTION N RUNS        evaluations of each run, or `failed`
 //!     cmaes_evaluations cost N GENERATIONS     seconds per generation on the sphere
+//!
+//! Without arguments: sphere 10 20.
 
 #![allow(clippy::print_stdout)] // a program
 
@@ -19,7 +21,10 @@ fn value(function: &str, x: &[f64]) -> f64 {
 }
 
 fn main() -> Result<(), SearchError> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.is_empty() {
+        arguments = ["sphere", "10", "20"].map(String::from).to_vec();
+    }
     let [function, n, count] = &arguments[..] else { panic!("FUNCTION N RUNS") };
     let (Ok(n), Ok(count)) = (n.parse::<usize>(), count.parse::<u64>()) else { panic!("N and RUNS are counts") };
     if function == "cost" {

@@ -1,4 +1,5 @@
-//! Learners: generalised advantages, value baselines, PPO; searches without gradients: CMA-ES. They see policies and batches, never an environment.
+//! Learners: generalised advantages, value baselines, PPO. Searches without gradients: CMA-ES, random search. They see
+//! policies, batches and scores, never an environment.
 
 mod adam;
 mod baseline;

@@ -1,6 +1,5 @@
 //! Progress of a comparison: a line per cell that is at work, and how long all of it will take.
 
-use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -9,7 +8,7 @@ use hwasp_lab::{Event, TrainError};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::output::remark;
-use crate::progress::duration;
+use crate::progress::{duration, has_terminal};
 
 const CELL: &str = "{percent:>3}% {bar:20.cyan/dim} {wide_msg}";
 const ALL: &str = "{percent:>3}% {bar:20.green/dim} {wide_msg}";
@@ -36,18 +35,16 @@ struct CellState {
     env_steps: u64,
     /// Seconds of its own, as far as it is.
     wall_s: f64,
+    /// Trained, or there already.
     done: bool,
-    /// It was there already.
-    old: bool,
     bar: Option<ProgressBar>,
 }
 
 impl GridProgress {
     pub(crate) fn new(quiet: bool, threads: usize) -> Self {
-        let dumb = std::env::var_os("TERM").is_none_or(|term| term == "dumb");
         Self {
             quiet,
-            terminal: std::io::stderr().is_terminal() && !dumb,
+            terminal: has_terminal(),
             threads,
             began: Instant::now(),
             bars: MultiProgress::new(),
@@ -79,18 +76,17 @@ impl State {
     /// Cells that are done, and seconds left: methods differ in speed, so each cell that has not begun is taken to need
     /// what those of its method did, or the mean of all.
     fn outlook(&self, threads: usize) -> (usize, Option<f64>) {
-        let begun: Vec<&CellState> =
-            self.cells.iter().filter(|c| !c.old && c.env_steps > 0 && c.wall_s > 0.0).collect();
+        let begun: Vec<&CellState> = self.cells.iter().filter(|c| c.env_steps > 0 && c.wall_s > 0.0).collect();
         let whole = |c: &CellState| c.wall_s * c.budget as f64 / c.env_steps as f64;
         let mean =
             |of: &[&CellState]| (!of.is_empty()).then(|| of.iter().map(|c| whole(c)).sum::<f64>() / of.len() as f64);
         let method = |c: &CellState| c.label.split(" seed ").next().unwrap_or_default().to_owned();
-        let left = self.cells.iter().filter(|c| !c.done && !c.old).map(|c| {
+        let left = self.cells.iter().filter(|c| !c.done).map(|c| {
             let alike: Vec<&CellState> = begun.iter().copied().filter(|b| method(b) == method(c)).collect();
             mean(&alike).or_else(|| mean(&begun)).map(|whole| (whole - c.wall_s).max(0.0))
         });
         let left = left.sum::<Option<f64>>().map(|seconds| seconds / threads as f64);
-        (self.cells.iter().filter(|c| c.done || c.old).count(), left)
+        (self.cells.iter().filter(|c| c.done).count(), left)
     }
 }
 
@@ -104,8 +100,7 @@ impl Watch for GridProgress {
                     budget: *budget,
                     env_steps: 0,
                     wall_s: 0.0,
-                    done: false,
-                    old: *old,
+                    done: *old,
                     bar: None,
                 })
                 .collect();

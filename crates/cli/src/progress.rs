@@ -28,11 +28,9 @@ pub(crate) struct Progress {
 impl Progress {
     pub(crate) fn new(assembly: &Assembly) -> Self {
         let groups = assembly.policy.space().groups();
-        // A terminal that cannot move its cursor gets lines.
-        let dumb = std::env::var_os("TERM").is_none_or(|term| term == "dumb");
         Self {
             bar: ProgressBar::hidden(),
-            terminal: std::io::stderr().is_terminal() && !dumb,
+            terminal: has_terminal(),
             units: groups.iter().map(|g| g.dimension.si().to_owned()).collect(),
             env_steps: 1,
             names: Vec::new(),
@@ -77,6 +75,11 @@ impl Progress {
             remark(&format!("{:>width$} of {total} steps  {message}", grouped(row.env_steps), width = total.len()));
         }
     }
+}
+
+/// Whether there is a terminal that can move its cursor; anything else gets lines.
+pub(crate) fn has_terminal() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(|term| term != "dumb")
 }
 
 /// A time such as `42 s`, `3 min 5 s` or `2 h 10 min`.

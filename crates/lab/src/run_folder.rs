@@ -100,7 +100,8 @@ const PROVENANCE: &str = "provenance.json";
 const METRICS: &str = "metrics.csv";
 const DESIGN: &str = "design.toml";
 const POLICY: &str = "policy.safetensors";
-const SUMMARY: &str = "summary.json";
+/// Written last: a folder that has it is finished.
+pub(crate) const SUMMARY: &str = "summary.json";
 const CURVES: &str = "curves.svg";
 
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.
@@ -245,7 +246,7 @@ fn boxed(error: RunError) -> ObserverError {
     ObserverError(Box::new(error))
 }
 
-fn io_error(action: &'static str, path: &Path, source: io::Error) -> RunError {
+pub(crate) fn io_error(action: &'static str, path: &Path, source: io::Error) -> RunError {
     RunError::Io { action, path: path.to_owned(), source }
 }
 

@@ -45,7 +45,7 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
         Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
     let mut problem = Problem { assembly, sampler, start, filter };
     let mut search = problem.searcher()?;
-    let mut learned = Learned::new(problem.start.clone());
+    let mut learned = Learned::default();
     let mut best: Option<(f64, Vec<f32>)> = None;
     while search.stopped().is_none() {
         let candidates = search.ask();

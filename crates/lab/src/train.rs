@@ -104,6 +104,7 @@ pub(crate) struct Loop<'a> {
 }
 
 /// Where a training stands.
+#[derive(Default)]
 pub(crate) struct Learned {
     pub(crate) params: Vec<f32>,
     pub(crate) iterations: u64,
@@ -114,10 +115,6 @@ pub(crate) struct Learned {
 }
 
 impl Learned {
-    pub(crate) fn new(params: Vec<f32>) -> Self {
-        Self { params, iterations: 0, env_steps: 0, failed_candidates: 0, recent: VecDeque::new() }
-    }
-
     /// Counts an iteration whose steps are counted already, and tells of it. `update` gives KL divergence and entropy.
     pub(crate) fn tell(
         &mut self,
@@ -158,7 +155,7 @@ pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learne
     let mut learner = assembly.learner(assembly.init());
     let sampler =
         Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
-    let mut learned = Learned::new(Vec::new());
+    let mut learned = Learned::default();
     while learned.env_steps < spec.train.env_steps && !run.stop.load(Ordering::Relaxed) {
         let progress = learned.env_steps as f64 / spec.train.env_steps as f64;
         let iteration = learned.iterations;

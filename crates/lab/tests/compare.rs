@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_lab::compare::{CellResult, CompareError, Comparison, Contender, Grid, Watch};
+use hwasp_lab::compare::{self, CellResult, CompareError, Comparison, Contender, Grid, Watch};
 use hwasp_lab::{Event, TrainError, spec};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
@@ -51,7 +51,7 @@ impl Watch for Counter {
 }
 
 fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, CompareError> {
-    grid.run(folder, &Threads::new(2).unwrap(), &["hwasp".into()], watch, &watch.stop)
+    compare::run(&grid.cells(folder)?, &Threads::new(2).unwrap(), &["hwasp".into()], watch, &watch.stop)
 }
 
 /// The figures without times.

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_lab::compare::{CellResult, CompareError, Comparison, Contender, Grid};
-use hwasp_lab::spec;
+use hwasp_lab::compare::{self, CellResult, CompareError, Comparison, Contender, Grid};
 
-use super::stop_on_signal;
+use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
 use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
@@ -17,13 +16,8 @@ use crate::output;
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let contenders = args.methods.iter().map(|text| Contender::parse(text)).collect::<Result<Vec<_>, _>>();
     let contenders = contenders.map_err(Failure::input)?;
-    let mut layers = spec::load(&args.experiment).map_err(Failure::input)?;
-    for assignment in &args.set {
-        layers = layers.with_assignment(assignment);
-    }
-    if let Some(steps) = args.env_steps {
-        layers = layers.with_option(format!("--env-steps {steps}"), "train.env_steps", &steps.to_string());
-    }
+    let further: Vec<_> = args.env_steps.map(|steps| ("env-steps", steps.to_string())).into_iter().collect();
+    let layers = layers(&args.experiment, &args.set, &further)?;
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: 0..args.seeds };
@@ -48,9 +42,8 @@ pub(super) fn run_grid(
     let first = cells.first().ok_or_else(|| Failure::input("there is nothing to compare"))?;
     let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
     let progress = GridProgress::new(quiet, threads);
-    let typed: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
     let executor = Threads::new(threads)?;
-    let results = grid.run(folder, &executor, &typed, &progress, stop).map_err(|error| match error {
+    let results = compare::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
         CompareError::Other { .. } => Failure::input(error),
         _ => error.into(),
     })?;

@@ -15,22 +15,33 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Executor, Serial, Threads};
-use hwasp_lab::spec::{self, Spec};
+use hwasp_lab::spec::{self, Layers, Spec};
 use hwasp_lab::{Assembly, SavedRun};
 
 use crate::args::ExperimentArgs;
 use crate::failure::Failure;
 
-/// The experiment that arguments name, with further settings on top, put together.
-fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
-    let mut layers = spec::load(&args.experiment).map_err(Failure::input)?;
-    for assignment in args.set() {
+/// An experiment with settings on top: those of `--set`, then further options by their flags.
+fn layers(experiment: &str, set: &[String], further: &[(&str, String)]) -> Result<Layers, Failure> {
+    let mut layers = spec::load(experiment).map_err(Failure::input)?;
+    for assignment in set {
         layers = layers.with_assignment(assignment);
     }
     for (flag, value) in further {
         let key = if *flag == "env-steps" { "train.env_steps" } else { flag };
         layers = layers.with_option(format!("--{flag} {value}"), key, value);
     }
+    Ok(layers)
+}
+
+/// What was typed. Folders may be called what is no UTF-8.
+fn typed() -> Vec<String> {
+    std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect()
+}
+
+/// The experiment that arguments name, with further settings on top, put together.
+fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
+    let layers = layers(&args.experiment, args.set(), further)?;
     let spec = spec::resolve(layers, args.method()).map_err(Failure::input)?;
     let assembly = Assembly::new(&spec).map_err(Failure::input)?;
     Ok((spec, assembly))

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hwasp_lab::{Observer, Provenance, RunFolder, TensorBoard, train};
 
-use super::{executor, experiment, stop_on_signal};
+use super::{executor, experiment, stop_on_signal, typed};
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -17,9 +17,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let (spec, assembly) = experiment(&args.experiment, &further)?;
     let executor = executor(args.threads)?;
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
-    // Folders may be called what is no UTF-8.
-    let typed = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
-    let provenance = Provenance::new(typed, args.threads.get(), spec.seed);
+    let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
     let mut folder = RunFolder::create(&path, &spec, &provenance).map_err(Failure::input)?;
     let mut board = args.tensorboard.then(|| TensorBoard::create(&path.join("tensorboard"))).transpose()?;

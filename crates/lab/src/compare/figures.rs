@@ -148,7 +148,7 @@ fn area(metrics: &MetricsTable, budget: u64) -> f64 {
 }
 
 /// The mean over the last rows at each row.
-fn trailing(metrics: &MetricsTable) -> impl Iterator<Item = (u64, f64)> + '_ {
+pub(super) fn trailing(metrics: &MetricsTable) -> impl Iterator<Item = (u64, f64)> + '_ {
     (0..metrics.rows.len()).map(|end| {
         let rows = &metrics.rows[(end + 1).saturating_sub(TRAILING)..=end];
         let mean = rows.iter().map(|row| row.discounted_return).sum::<f64>() / rows.len() as f64;

@@ -9,7 +9,6 @@ mod report;
 mod reproduce;
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -25,7 +24,7 @@ use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::MetricsTable;
 use crate::observer::{Event, Observer, ObserverError};
 use crate::plot::{PlotError, PlotOptions};
-use crate::run_folder::{Provenance, RunError, RunFolder, SavedRun};
+use crate::run_folder::{Provenance, RunError, RunFolder, SUMMARY, SavedRun, io_error};
 use crate::spec::{Layers, SpecErrors, resolve};
 use crate::stats::StatsError;
 use crate::summary::Summary;
@@ -65,16 +64,6 @@ pub enum CompareError {
     /// A folder or file.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The file system.
-    #[error("cannot {action} {path}: {source}")]
-    Io {
-        /// read, write …
-        action: &'static str,
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
     /// A figure over the seeds.
     #[error(transparent)]
     Stats(#[from] StatsError),
@@ -147,34 +136,32 @@ impl Grid {
         }
         Ok(cells)
     }
+}
 
-    /// Runs what is not finished yet, cells in parallel, each on one thread, and returns what is. Cells that failed are
-    /// told to `watch` and missing from the result. When `stop` is set, cells under way are left unfinished.
-    pub fn run(
-        &self,
-        folder: &Path,
-        executor: &dyn Executor,
-        command_line: &[String],
-        watch: &dyn Watch,
-        stop: &AtomicBool,
-    ) -> Result<Vec<CellResult>, CompareError> {
-        let cells = self.cells(folder)?;
-        let finished = cells.iter().map(Cell::is_finished).collect::<Result<Vec<_>, _>>()?;
-        let known = cells.iter().zip(&finished).map(|(cell, &finished)| {
-            (format!("{} seed {}", cell.label, cell.seed), cell.assembly.spec().train.env_steps, finished)
-        });
-        watch.grid(&known.collect::<Vec<_>>());
-        let results = executor.map(cells.len(), |i| {
-            if finished[i] {
-                return cells[i].result().map(Some);
-            }
-            if stop.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-            cells[i].train(i, command_line, watch, stop)
-        });
-        results.into_iter().filter_map(Result::transpose).collect()
-    }
+/// Runs what is not finished yet, cells in parallel, each on one thread, and returns what is. Cells that failed are told to
+/// `watch` and missing from the result. When `stop` is set, cells under way are left unfinished.
+pub fn run(
+    cells: &[Cell],
+    executor: &dyn Executor,
+    command_line: &[String],
+    watch: &dyn Watch,
+    stop: &AtomicBool,
+) -> Result<Vec<CellResult>, CompareError> {
+    let finished = cells.iter().map(Cell::is_finished).collect::<Result<Vec<_>, _>>()?;
+    let known = cells.iter().zip(&finished).map(|(cell, &finished)| {
+        (format!("{} seed {}", cell.label, cell.seed), cell.assembly.spec().train.env_steps, finished)
+    });
+    watch.grid(&known.collect::<Vec<_>>());
+    let results = executor.map(cells.len(), |i| {
+        if finished[i] {
+            return cells[i].result().map(Some);
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        cells[i].train(i, command_line, watch, stop)
+    });
+    results.into_iter().filter_map(Result::transpose).collect()
 }
 
 impl Cell {
@@ -183,14 +170,14 @@ impl Cell {
         if !self.path.exists() {
             return Ok(false);
         }
-        let io = |action, source| CompareError::Io { action, path: self.path.clone(), source };
+        let io = |action, source| io_error(action, &self.path, source);
         // A run that was killed at once has left nothing, or a file half written.
         let mut entries = fs::read_dir(&self.path).map_err(|e| io("read", e))?;
         let begun = entries.any(|entry| entry.is_ok_and(|e| e.path().extension().is_none_or(|x| x != "partial")));
         if begun && *SavedRun::open(&self.path)?.assembly().spec() != *self.assembly.spec() {
             return Err(CompareError::Other { path: self.path.clone() });
         }
-        if self.path.join("summary.json").is_file() {
+        if self.path.join(SUMMARY).is_file() {
             return Ok(true);
         }
         fs::remove_dir_all(&self.path).map_err(|e| io("clear", e))?;

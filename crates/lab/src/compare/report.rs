@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::figures::{Figure, MethodFigures, Pair, default_threshold};
 use super::{CellResult, CompareError};
 use crate::plot::{Band, Curve, PlotOptions, XAxis, curves, write_plot};
+use crate::run_folder::io_error;
 
 /// The figures of all methods.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -137,7 +138,7 @@ impl Comparison {
     pub fn write(&self, folder: &Path, cells: &[CellResult], options: &PlotOptions) -> Result<(), CompareError> {
         let write = |name: &str, text: String| {
             let path = folder.join(name);
-            fs::write(&path, text).map_err(|source| CompareError::Io { action: "write", path, source })
+            fs::write(&path, text).map_err(|source| io_error("write", &path, source))
         };
         write("table.md", self.markdown())?;
         write("table.csv", self.csv())?;

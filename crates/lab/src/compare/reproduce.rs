@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::figures::trailing;
 use super::{CellResult, CompareError, Contender, Grid};
 use crate::spec;
 use crate::stats::Sample;
-use crate::train::TRAILING;
 
 /// A figure or table of the paper.
 #[derive(Clone, Copy, Debug)]
@@ -156,12 +156,7 @@ impl What {
     fn of(self, cell: &CellResult) -> Option<f64> {
         match self {
             Self::Total => cell.summary.design.values().next().map(|group| group.total),
-            Self::ReturnAt(steps) => {
-                let rows = &cell.metrics.rows;
-                let end = rows.iter().position(|row| row.env_steps >= steps)?;
-                let last = &rows[(end + 1).saturating_sub(TRAILING)..=end];
-                Some(last.iter().map(|row| row.discounted_return).sum::<f64>() / last.len() as f64)
-            }
+            Self::ReturnAt(steps) => trailing(&cell.metrics).find(|(at, _)| *at >= steps).map(|(_, mean)| mean),
         }
     }
 }

@@ -134,10 +134,7 @@ impl PpoSpec {
         };
         let sound = s.reader.sound(&["train.episodes_per_iteration", "train.episode_steps", "task.horizon"]);
         if spec.minibatch_rows > rows && sound {
-            let message = format!(
-                "ppo.minibatch_rows = {} is more than the {rows} rows of an iteration ({} episodes of {} steps)",
-                spec.minibatch_rows, train.episodes_per_iteration, train.episode_steps
-            );
+            let message = format!("ppo.minibatch_rows = {} is more than the {}", spec.minibatch_rows, train.portion());
             s.clash("minibatch_rows", message, "0 takes the whole batch at once");
         }
         s.finish();

@@ -122,10 +122,8 @@ impl SearchSpec {
         };
         let sound = s.reader.sound(&["search.inner_env_steps", "train.episodes_per_iteration", "train.episode_steps"]);
         if spec.inner_env_steps < rows && sound {
-            let message = format!(
-                "search.inner_env_steps = {} is less than the {rows} rows of an iteration ({} episodes of {} steps)",
-                spec.inner_env_steps, train.episodes_per_iteration, train.episode_steps
-            );
+            let message =
+                format!("search.inner_env_steps = {} is less than the {}", spec.inner_env_steps, train.portion());
             s.clash("inner_env_steps", message, "train each candidate for at least one iteration");
         }
         s.finish();

@@ -39,6 +39,12 @@ impl TrainSpec {
         self.episodes_per_iteration.saturating_mul(self.episode_steps)
     }
 
+    /// An iteration in words.
+    pub(super) fn portion(&self) -> String {
+        let (episodes, steps) = (self.episodes_per_iteration, self.episode_steps);
+        format!("{} rows of an iteration ({episodes} episodes of {steps} steps)", self.rows())
+    }
+
     /// Reads the table for a task of this horizon.
     pub(super) fn read(mut s: Section<'_>, horizon: usize) -> Self {
         let mut spec = Self {
@@ -56,10 +62,7 @@ impl TrainSpec {
             let message = format!("train.episode_steps = {} is more than task.horizon = {horizon}", spec.episode_steps);
             s.clash("episode_steps", message, &format!("set train.episode_steps to at most {horizon}"));
         }
-        let portion = format!(
-            "{rows} rows of an iteration ({} episodes of {} steps)",
-            spec.episodes_per_iteration, spec.episode_steps
-        );
+        let portion = spec.portion();
         if rows > MOST_ROWS {
             let hint = "take fewer or shorter episodes per iteration";
             s.clash("episodes_per_iteration", format!("the {portion} are more than {MOST_ROWS}"), hint);

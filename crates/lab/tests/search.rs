@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
-use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hwasp_core::{Serial, Threads};
+use hwasp_core::{EnvSpec, Environment, Serial, Step, Stream, Threads};
 use hwasp_lab::metrics::MetricsRow;
 use hwasp_lab::{AssembleError, Assembly, Event, Observer, ObserverError, Trained, evaluate, spec, train};
 
@@ -103,5 +104,75 @@ fn searches_learn_to_reach() {
         let after = trained.evaluation.discounted_return.mean;
         assert!(after > 0.5 * before, "{method}: {before} became {after}");
         assert_eq!(trained.failed_candidates, Some(0));
+    }
+}
+
+/// A plant that gives no number where the motor is driven too fast, and counts how often it did; the episode ends there.
+struct Fragile {
+    inner: Box<dyn Environment>,
+    faults: Arc<AtomicU64>,
+}
+
+const FASTEST: f64 = 0.3; // m/s
+
+impl Environment for Fragile {
+    fn spec(&self) -> &EnvSpec {
+        self.inner.spec()
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.inner.reset(rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.inner.state(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        let step = self.inner.step(effort, command);
+        if effort[0].abs() <= FASTEST {
+            return step;
+        }
+        self.faults.fetch_add(1, Ordering::Relaxed);
+        Step { reward: f64::NAN, ..step }
+    }
+}
+
+/// Candidates whose episode or whose training fails are counted, charged in full, and passed over.
+#[test]
+fn failing_candidates_rank_last_and_are_charged() {
+    let settings: [(&str, &[(&str, &str)], u64); 4] = [
+        ("cmaes", &[("cmaes.sigma", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
+        ("ars", &[("ars.noise_std", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
+        ("cmaes-rl", &[("cmaes.popsize", "5")], 1200),
+        ("ars-rl", &[("ars.directions", "4"), ("ars.noise_std", "0.4")], 1200),
+    ];
+    for (method, settings, each) in settings {
+        let mut assembly = assembly(method, settings).unwrap();
+        let sound = run(&assembly, 1).0;
+        let (faults, whole) = (Arc::new(AtomicU64::new(0)), assembly.problem.training.make.clone());
+        let counted = faults.clone();
+        assembly.problem.training.make = Arc::new(move |horizon| {
+            Box::new(Fragile { inner: whole.make(horizon), faults: counted.clone() }) as Box<dyn Environment>
+        });
+        assembly.problem.deployment = assembly.problem.training.clone();
+        let trained = run(&assembly, 1).0;
+        let failed = trained.failed_candidates.unwrap();
+        let candidates = trained.iterations * assembly.generation().unwrap().0 as u64;
+        assert!(0 < failed && failed < candidates, "{method}: {failed} of {candidates}");
+        assert_eq!((trained.iterations, trained.env_steps), (sound.iterations, sound.env_steps), "{method}");
+        // Episodes of a training go side by side, so that two of them may fail in one step.
+        let faults_seen = faults.load(Ordering::Relaxed);
+        let trains = method.ends_with("-rl");
+        assert!(if trains { faults_seen >= failed } else { faults_seen == failed }, "{method}: {faults_seen} {failed}");
+        assert!(each * candidates <= trained.env_steps);
+        assert!(trained.evaluation.discounted_return.mean.is_finite());
+        faults.store(0, Ordering::Relaxed);
+        evaluate(&assembly, &trained.params, (20, 1), &Serial).unwrap();
+        assert_eq!(faults.load(Ordering::Relaxed), 0, "{method} gives a candidate that fails");
     }
 }

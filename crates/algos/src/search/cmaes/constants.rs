@@ -69,8 +69,9 @@ impl Constants {
             .map(|(i, w)| if i < mu { w / positive } else { w * alpha / negative }) // (53)
             .collect();
 
-        // Appendix B.2: the cost of a decomposition is spread over so many generations that it is O(n²) for each.
-        let eigen_gap = (1.0 / (10.0 * n * (c_1 + c_mu))).floor().max(1.0) as u64;
+        // Appendix B.2, rounded up as `cma` does: the cost of a decomposition is spread over so many generations that it
+        // is O(n²) for each.
+        let eigen_gap = (1.0 / (10.0 * n * (c_1 + c_mu))).ceil() as u64;
         Self {
             popsize,
             mu,

@@ -101,6 +101,7 @@ impl Moment {
             None => 0.0,
             Some(End::Terminated) => 1.0,
             Some(End::Truncated) => 2.0,
+            Some(End::Faulted) => 3.0,
         };
         let parts = [("observation", observation), ("state", state), ("reward", vec![reward]), ("end", vec![code])];
         let moment = Self { parts, end };

@@ -10,6 +10,17 @@ pub enum End {
     Terminated,
     /// Out of time; the future went on, so its value is estimated.
     Truncated,
+    /// The physics failed ([`Environment::fault`] says how): the episode is worth nothing and is thrown away.
+    Faulted,
+}
+
+/// Whether an episode did what the task is about, for tasks that can be failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// What kind of episode it was, the object's shape for one: success is told for each kind.
+    pub kind: &'static str,
+    /// Whether it succeeded.
+    pub success: bool,
 }
 
 /// What one step gave.
@@ -65,6 +76,11 @@ pub trait Plant: Send {
 
     /// Writes the privileged state that laws read.
     fn state(&self, out: &mut [f64]);
+
+    /// What went wrong in the last step, where the numbers gave out.
+    fn fault(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Purpose: where an episode starts, what is seen of the plant, and what it is worth.
@@ -81,12 +97,17 @@ pub trait Task: Send {
     /// Writes what the controller sees, in SI.
     fn observe(&self, plant: &Self::Plant, out: &mut [f64]);
 
-    /// The reward of having arrived at this state under `command`.
-    fn reward(&self, plant: &Self::Plant, command: &[f64]) -> f64;
+    /// The reward of having arrived at this state under `command`; called once a step, so that a task may keep count.
+    fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
     /// Whether this state has no future.
     fn terminated(&self, _plant: &Self::Plant) -> bool {
         false
+    }
+
+    /// Whether the episode so far is a success, for tasks that know.
+    fn outcome(&self) -> Option<Outcome> {
+        None
     }
 }
 
@@ -106,6 +127,16 @@ pub trait Environment: Send {
 
     /// One control step. Commands are limited to their ports' ranges by the environment itself.
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step;
+
+    /// Whether the episode so far is a success, for tasks that know.
+    fn outcome(&self) -> Option<Outcome> {
+        None
+    }
+
+    /// What went wrong, after a step that [faulted](End::Faulted).
+    fn fault(&self) -> Option<String> {
+        None
+    }
 }
 
 /// A plant with a task: the one environment there is.
@@ -164,6 +195,9 @@ impl<T: Task> Environment for Robot<T> {
         }
         self.plant.advance(effort, &self.limited);
         self.taken += 1;
+        if self.plant.fault().is_some() {
+            return Step { reward: 0.0, end: Some(End::Faulted) };
+        }
         let end = if self.task.terminated(&self.plant) {
             Some(End::Terminated)
         } else if self.taken >= self.spec.horizon {
@@ -172,6 +206,14 @@ impl<T: Task> Environment for Robot<T> {
             None
         };
         Step { reward: self.task.reward(&self.plant, &self.limited), end }
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        self.task.outcome()
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.plant.fault()
     }
 }
 

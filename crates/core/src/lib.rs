@@ -16,7 +16,9 @@ mod units;
 
 pub use check_env::{EnvFault, check_env};
 pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
-pub use environment::{CommandPort, End, EnvSpec, Environment, MakeEnvironment, Plant, Port, Robot, Step, Task};
+pub use environment::{
+    CommandPort, End, EnvSpec, Environment, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,
+};
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Law, Ports};
 pub use placement::{Placement, PlacementError};

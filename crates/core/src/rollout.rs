@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use thiserror::Error;
 
-use crate::environment::{End, Environment, MakeEnvironment};
+use crate::environment::{End, Environment, MakeEnvironment, Outcome};
 use crate::executor::Executor;
 use crate::placement::Body;
 use crate::policy::{Actor, HardwarePolicy, Policy};
@@ -25,6 +25,8 @@ pub struct Episode {
     pub last_obs: Vec<f32>,
     /// The law's state there, SI.
     pub last_state: Vec<f32>,
+    /// Whether it succeeded, for tasks that know.
+    pub outcome: Option<Outcome>,
 }
 
 /// Whole episodes, one row per step, an episode's rows one after the other.
@@ -40,14 +42,21 @@ pub struct Batch {
     pub log_prob: Vec<f32>,
     /// Rewards.
     pub reward: Vec<f64>,
-    /// The episodes, by index.
+    /// The episodes, by index, without those whose physics failed.
     pub episodes: Vec<Episode>,
+    /// Those whose physics failed; their rows were thrown away.
+    pub faults: Vec<RolloutError>,
 }
 
 impl Batch {
-    /// The number of rows: real simulator steps.
+    /// The number of rows.
     pub fn rows(&self) -> usize {
         self.reward.len()
+    }
+
+    /// Real simulator steps taken, those of discarded episodes included.
+    pub fn env_steps(&self) -> u64 {
+        self.rows() as u64 + self.faults.iter().map(|f| f.step as u64 + 1).sum::<u64>()
     }
 
     /// The discounted return of each episode, Σ discount^t·reward.
@@ -69,12 +78,13 @@ impl Batch {
             e.rows = e.rows.start + at..e.rows.end + at;
             e
         }));
+        self.faults.extend(other.faults);
     }
 }
 
 /// Why an episode is worth nothing.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("episode {episode} of iteration {iteration} (seed {seed}) gave {what} = {value} at step {step}")]
+#[error("episode {episode} of iteration {iteration} (seed {seed}) failed at step {step}: {what}")]
 pub struct RolloutError {
     /// The run's root seed.
     pub seed: u64,
@@ -84,10 +94,8 @@ pub struct RolloutError {
     pub episode: u64,
     /// The step.
     pub step: usize,
-    /// What is not a number.
-    pub what: &'static str,
-    /// What it is instead.
-    pub value: f64,
+    /// What went wrong.
+    pub what: String,
 }
 
 /// Which episodes to run, and how.
@@ -144,6 +152,9 @@ impl Sampler {
     }
 
     /// Runs the episodes and returns them in the order of their indices.
+    ///
+    /// # Errors
+    /// Where a reward is no number, or where the physics failed in every episode; the first of them is told.
     pub fn collect(&self, executor: &dyn Executor, params: &[f32], episodes: &Episodes) -> Result<Batch, RolloutError> {
         let count = (episodes.indices.end - episodes.indices.start) as usize;
         let lanes = count.div_ceil(executor.workers()).clamp(1, LANES);
@@ -158,7 +169,10 @@ impl Sampler {
         for part in parts {
             batch.append(part?);
         }
-        Ok(batch)
+        match batch.faults.first() {
+            Some(fault) if batch.episodes.is_empty() => Err(fault.clone()),
+            _ => Ok(batch),
+        }
     }
 
     /// Takes an idle environment or makes one.
@@ -215,6 +229,7 @@ impl<'p> Lanes<'p> {
             log_prob: vec![0.0; rows],
             reward: vec![0.0; rows],
             episodes: Vec::with_capacity(count),
+            faults: Vec::new(),
         };
         Self {
             policy,
@@ -276,17 +291,21 @@ impl<'p> Lanes<'p> {
                 }
                 self.batch.log_prob[row] = actor.log_prob(e);
                 self.batch.reward[row] = result.reward;
+                let error = |what| RolloutError {
+                    seed: episodes.seed,
+                    iteration: episodes.iteration,
+                    episode: episodes.indices.start + e as u64,
+                    step,
+                    what,
+                };
                 if !result.reward.is_finite() {
-                    return Err(RolloutError {
-                        seed: episodes.seed,
-                        iteration: episodes.iteration,
-                        episode: episodes.indices.start + e as u64,
-                        step,
-                        what: "reward",
-                        value: result.reward,
-                    });
+                    return Err(error(format!("the reward is {}", result.reward)));
                 }
                 if let Some(end) = result.end {
+                    if end == End::Faulted {
+                        let what = self.environments[e].fault();
+                        self.batch.faults.push(error(what.unwrap_or_else(|| "the physics failed".into())));
+                    }
                     self.ends[e] = Some((end, step + 1));
                 }
             }
@@ -294,7 +313,7 @@ impl<'p> Lanes<'p> {
         Ok(())
     }
 
-    /// Closes the gaps that early ends have left.
+    /// Closes the gaps that early ends and discarded episodes have left.
     fn finish(&mut self) -> Batch {
         let obs_dim = self.policy.obs_dim();
         let widths = [obs_dim, self.policy.state_dim(), self.policy.action_dim(), 1];
@@ -302,6 +321,9 @@ impl<'p> Lanes<'p> {
         let (mut seen, mut state) = (vec![0.0; obs_dim], vec![0.0; widths[1]]);
         for (e, end) in self.ends.iter().enumerate() {
             let (end, len) = end.unwrap_or((End::Truncated, self.horizon));
+            if end == End::Faulted {
+                continue;
+            }
             let from = e * self.horizon;
             let batch = &mut self.batch;
             let columns = [&mut batch.obs, &mut batch.state, &mut batch.action, &mut batch.log_prob];
@@ -316,7 +338,8 @@ impl<'p> Lanes<'p> {
             self.policy.normalize(&seen, &mut last_obs);
             self.environments[e].state(&mut state);
             let last_state = state.iter().map(|&x| x as f32).collect();
-            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state });
+            let outcome = self.environments[e].outcome();
+            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state, outcome });
             at += len;
         }
         let batch = &mut self.batch;
@@ -326,6 +349,7 @@ impl<'p> Lanes<'p> {
             column.truncate(at * width);
         }
         batch.reward.truncate(at);
+        batch.faults.sort_by_key(|fault| fault.episode);
         std::mem::take(batch)
     }
 }

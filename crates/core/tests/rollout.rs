@@ -8,8 +8,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use hwasp_core::{
-    Batch, End, EnvSpec, Environment, EpisodeKind, Episodes, Executor, Purpose, Sampler, Serial, Step, Stream, Threads,
-    stream,
+    Batch, End, EnvSpec, Environment, EpisodeKind, Episodes, Executor, Outcome, Purpose, Sampler, Serial, Step, Stream,
+    Threads, stream,
 };
 use rand::RngExt;
 
@@ -96,6 +96,8 @@ enum Habit {
     EndsEarly,
     /// Gives no number as reward in step 4 where it started above a half.
     LosesReward,
+    /// Its physics fail there.
+    Faults,
 }
 
 /// Shows where it started, in [0, 1), and how many steps it took; the reward is their sum.
@@ -144,6 +146,7 @@ impl Environment for Clock {
         let bad = self.taken == BAD_STEP && self.start > 0.5;
         self.taken += 1;
         let (reward, end) = match self.habit {
+            Habit::Faults => (1.0, bad.then_some(End::Faulted)),
             Habit::LosesReward => (if bad { f64::NAN } else { 1.0 }, None),
             Habit::EndsEarly => {
                 let over = self.taken == Self::length(self.start);
@@ -151,6 +154,14 @@ impl Environment for Clock {
             }
         };
         Step { reward, end: end.or((self.taken >= self.spec.horizon).then_some(End::Truncated)) }
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        Some(Outcome { kind: "clock", success: self.start > 0.25 })
+    }
+
+    fn fault(&self) -> Option<String> {
+        Some(format!("it started at {}", self.start))
     }
 }
 
@@ -232,9 +243,42 @@ fn a_reward_that_is_no_number_is_named() {
     for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
         let training = episodes(first..first + 40, EpisodeKind::Training);
         let error = sampler.collect(executor, &params, &training).unwrap_err();
-        assert_eq!(error.to_string(), format!("episode {bad} of iteration 3 (seed 7) gave reward = NaN at step 4"));
+        assert_eq!(
+            error.to_string(),
+            format!("episode {bad} of iteration 3 (seed 7) failed at step 4: the reward is NaN")
+        );
         // The environments are good for the next batch.
         let batch = sampler.collect(executor, &params, &episodes(first..first + 1, EpisodeKind::Training)).unwrap();
         assert_eq!(batch.reward, [1.0; HORIZON]);
+    }
+}
+
+/// Episodes whose physics fail are thrown away, told by name and charged; the others are as they were without them.
+#[test]
+fn episodes_that_fault_are_discarded_and_counted() {
+    let (sampler, params) = sampler(Habit::Faults);
+    let (sound, _) = self::sampler(Habit::LosesReward);
+    let all = 0..40;
+    let starts: Vec<f64> = all.clone().map(|e| start(7, 3, e)).collect();
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+        let batch = sampler.collect(executor, &params, &episodes(all.clone(), EpisodeKind::Training)).unwrap();
+        let bad: Vec<u64> = all.clone().filter(|&e| starts[e as usize] > 0.5).collect();
+        assert_eq!(batch.faults.iter().map(|f| f.episode).collect::<Vec<_>>(), bad);
+        let fault = &batch.faults[0];
+        let what = format!("it started at {}", starts[fault.episode as usize]);
+        assert_eq!((fault.seed, fault.iteration, fault.step, &fault.what), (7, 3, BAD_STEP, &what));
+        assert_eq!(batch.env_steps(), (batch.episodes.len() * HORIZON + bad.len() * (BAD_STEP + 1)) as u64);
+        let good: Vec<u64> = all.clone().filter(|e| !bad.contains(e)).collect();
+        assert_eq!(batch.episodes.len(), good.len());
+        for (episode, &index) in batch.episodes.iter().zip(&good) {
+            let alone = sound.collect(&Serial, &params, &episodes(index..index + 1, EpisodeKind::Training)).unwrap();
+            let width = batch.action.len() / batch.rows();
+            let rows = episode.rows.start * width..episode.rows.end * width;
+            assert_eq!(batch.action[rows], alone.action[..]);
+            let success = starts[index as usize] > 0.25;
+            assert_eq!(episode.outcome, Some(Outcome { kind: "clock", success }));
+        }
+        let only = episodes(bad[0]..bad[0] + 1, EpisodeKind::Training);
+        assert_eq!(sampler.collect(executor, &params, &only).unwrap_err(), *fault);
     }
 }

@@ -84,7 +84,7 @@ impl Task for Deliver {
     }
 
     // Positive everywhere in the shaft: where rewards are negative, a crash that ends the episode would pay.
-    fn reward(&self, plant: &Cabin, command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &Cabin, command: &[f64]) -> f64 {
         1.0 - ((plant.height - GOAL) / SHAFT).powi(2) - 0.3 * (command[0] / MOTOR_LIMIT).powi(2)
     }
 

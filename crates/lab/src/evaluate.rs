@@ -1,14 +1,15 @@
 //! Evaluation: the deterministic policy on held-out starts, on the hardware as built.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hwasp_core::{EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::assemble::{AssembleError, Assembly, World};
-use crate::stats::{Interval, Sample, StatsError, bootstrap_interval};
+use crate::stats::{Interval, Sample, StatsError, bootstrap_interval, wilson};
 
 /// Why there is no evaluation.
 #[derive(Debug, Error)]
@@ -51,6 +52,58 @@ pub struct Evaluation {
     pub median_discounted_return: f64,
     /// The worst discounted return.
     pub worst_discounted_return: f64,
+    /// Episodes whose physics failed; they are in none of the figures.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub discarded_episodes: u64,
+    /// The share of episodes that succeeded, over all and for each kind, for tasks that know success.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub success: Vec<SuccessRate>,
+}
+
+/// How many episodes of a kind succeeded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SuccessRate {
+    /// The kind, the object's shape for one; `all` for every episode.
+    pub kind: String,
+    /// Episodes that succeeded.
+    pub successes: u64,
+    /// Episodes run.
+    pub episodes: u64,
+    /// The lower end of Wilson's 95 % interval of the share.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl SuccessRate {
+    /// The share that succeeded.
+    pub fn rate(&self) -> f64 {
+        self.successes as f64 / self.episodes as f64
+    }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+/// Over all episodes, then kind by kind in the order of their names; empty where the task knows no success.
+fn success_rates(batch: &Batch) -> Vec<SuccessRate> {
+    let mut kinds: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
+    for outcome in batch.episodes.iter().filter_map(|e| e.outcome) {
+        let (successes, episodes) = kinds.entry(outcome.kind).or_default();
+        *successes += u64::from(outcome.success);
+        *episodes += 1;
+    }
+    if kinds.is_empty() {
+        return Vec::new();
+    }
+    let all = kinds.values().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+    let rate = |kind: &str, (successes, episodes)| {
+        let Interval { low, high } = wilson(successes, episodes);
+        SuccessRate { kind: kind.to_owned(), successes, episodes, low, high }
+    };
+    std::iter::once(rate("all", all)).chain(kinds.iter().map(|(kind, &count)| rate(kind, count))).collect()
 }
 
 /// Evaluates the controller in `params` on the design in them, as built, where it has to work.
@@ -90,6 +143,8 @@ pub fn evaluate_in(
         undiscounted_return: mean_interval(&batch.returns(1.0), &mut stream)?,
         median_discounted_return: sample.quantile(0.5),
         worst_discounted_return: sample.min(),
+        discarded_episodes: batch.faults.len() as u64,
+        success: success_rates(&batch),
     })
 }
 

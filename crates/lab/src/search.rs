@@ -22,6 +22,8 @@ struct Scored {
     /// Mean discounted and undiscounted return, and steps taken; none of the returns where it failed.
     returns: Option<(f64, f64)>,
     env_steps: u64,
+    /// Episodes whose physics failed.
+    discarded_episodes: u64,
     /// What the controller saw, where a filter wants to know.
     seen: Vec<f32>,
 }
@@ -58,6 +60,7 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
         let scored = run.executor.map(candidates.len(), |i| problem.score(&candidates[i], generation, groups[i], stop));
         let scored = scored.into_iter().collect::<Result<Vec<_>, _>>()?;
         learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
+        learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
         if run.stop.load(Ordering::Relaxed) && spec.method.trains_inside() {
             // Trainings that were cut short say nothing of their designs.
             break;
@@ -189,13 +192,15 @@ impl Problem<'_> {
         let asked = Episodes { seed: spec.seed, iteration, indices, progress: 0.0, kind };
         let Ok(batch) = self.sampler.collect(&Serial, &params, &asked) else {
             let env_steps = count * spec.train.episode_steps as u64;
-            return Scored { params, returns: None, env_steps, seen: Vec::new() };
+            return Scored { params, returns: None, env_steps, discarded_episodes: 0, seen: Vec::new() };
         };
+        let sound = batch.faults.is_empty();
         Scored {
             params,
-            returns: Some(mean_returns(&batch, spec.ppo.discount)),
-            env_steps: batch.rows() as u64,
-            seen: if self.filter.is_some() { batch.obs } else { Vec::new() },
+            returns: sound.then(|| mean_returns(&batch, spec.ppo.discount)),
+            env_steps: batch.env_steps(),
+            discarded_episodes: batch.faults.len() as u64,
+            seen: if sound && self.filter.is_some() { batch.obs } else { Vec::new() },
         }
     }
 
@@ -213,10 +218,11 @@ impl Problem<'_> {
                 let controller = inner.policy.controller_params(&learned.params);
                 params[..controller.len()].copy_from_slice(controller);
                 let returns = learned.trailing();
-                Ok(Scored { params, returns: Some(returns), env_steps: learned.env_steps, seen: Vec::new() })
+                let Learned { env_steps, discarded_episodes, .. } = learned;
+                Ok(Scored { params, returns: Some(returns), env_steps, discarded_episodes, seen: Vec::new() })
             }
             Err(TrainError::Rollout(_) | TrainError::Learn(_)) => {
-                Ok(Scored { params, returns: None, env_steps, seen: Vec::new() })
+                Ok(Scored { params, returns: None, env_steps, discarded_episodes: 0, seen: Vec::new() })
             }
             Err(other) => Err(other),
         }
@@ -227,6 +233,7 @@ impl Problem<'_> {
         let both = [self.acting(&search.center()), best];
         let scored = both.map(|params| self.run(params, search.generation(), 0..FINAL_EPISODES as u64));
         learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
+        learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
         let [center, best] = scored;
         let score = |s: &Scored| s.returns.map_or(f64::NEG_INFINITY, |r| self.pick(r));
         if score(&best) > score(&center) { best.params } else { center.params }

@@ -235,3 +235,17 @@ pub fn improvement(one: &[f64], other: &[f64], stream: &mut Stream) -> Result<(f
     let interval = Interval { low: shares.quantile(0.025), high: shares.quantile(0.975) };
     Ok((share(&one.sorted, &other.sorted), interval))
 }
+
+/// Wilson's 95 % interval of a share of successes (Wilson 1927; `scipy.stats.binomtest(…).proportion_ci(method="wilson")`);
+/// without a single episode it is [0, 1].
+pub fn wilson(successes: u64, episodes: u64) -> Interval {
+    const Z: f64 = 1.959_963_984_540_054; // the normal distribution's quantile at 0.975
+    if episodes == 0 {
+        return Interval { low: 0.0, high: 1.0 };
+    }
+    let (n, share) = (episodes as f64, successes as f64 / episodes as f64);
+    let scale = 1.0 + Z * Z / n;
+    let center = (share + Z * Z / (2.0 * n)) / scale;
+    let half = Z / scale * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
+    Interval { low: (center - half).max(0.0), high: (center + half).min(1.0) }
+}

@@ -54,6 +54,9 @@ pub struct Summary {
     /// Candidates of a search that failed and ranked last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_candidates: Option<u64>,
+    /// Episodes whose physics failed.
+    #[serde(default)]
+    pub discarded_episodes: u64,
     /// The deterministic policy on held-out starts, on the hardware as built.
     pub evaluation: Evaluation,
     /// Whether training was stopped before its budget was spent.
@@ -78,6 +81,7 @@ impl Summary {
             training_discounted_return: trained.training_discounted_return,
             training_return: trained.training_return,
             failed_candidates: trained.failed_candidates,
+            discarded_episodes: trained.discarded_episodes,
             evaluation: trained.evaluation.clone(),
             stopped: trained.stopped,
             design: design_summary(assembly, &trained.params),

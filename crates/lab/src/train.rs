@@ -54,6 +54,8 @@ pub struct Trained {
     pub training_return: f64,
     /// Candidates of a search that failed and ranked last; none where the method does not search.
     pub failed_candidates: Option<u64>,
+    /// Episodes whose physics failed; their steps are charged, and nothing was learned from them.
+    pub discarded_episodes: u64,
     /// The final design on held-out starts.
     pub evaluation: Evaluation,
     /// Whether it was stopped before its time.
@@ -89,6 +91,7 @@ pub fn train(
         training_discounted_return,
         training_return,
         failed_candidates: spec.method.searches().then_some(learned.failed_candidates),
+        discarded_episodes: learned.discarded_episodes,
         evaluation,
         stopped: stop.load(Ordering::Relaxed) && learned.env_steps < spec.train.env_steps,
         params: learned.params,
@@ -110,6 +113,7 @@ pub(crate) struct Learned {
     pub(crate) iterations: u64,
     pub(crate) env_steps: u64,
     pub(crate) failed_candidates: u64,
+    pub(crate) discarded_episodes: u64,
     /// Mean discounted and undiscounted returns of the last iterations.
     recent: VecDeque<(f64, f64)>,
 }
@@ -167,7 +171,8 @@ pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learne
             kind: EpisodeKind::Training,
         };
         let batch = sampler.collect(run.executor, learner.params(), &asked)?;
-        learned.env_steps += batch.rows() as u64;
+        learned.env_steps += batch.env_steps();
+        learned.discarded_episodes += batch.faults.len() as u64;
         let update = learner.update(&batch, progress, iteration)?;
         let totals = assembly.policy.space().totals(&assembly.policy.design(learner.params()));
         learned.tell(mean_returns(&batch, spec.ppo.discount), (update.kl, update.entropy), totals, run)?;

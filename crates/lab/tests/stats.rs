@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use hwasp_core::{Purpose, Stream, stream};
-use hwasp_lab::stats::{Bootstrap, Sample, StatsError, bootstrap_interval, improvement, interquartile_mean, mean};
+use hwasp_lab::stats::{
+    Bootstrap, Interval, Sample, StatsError, bootstrap_interval, improvement, interquartile_mean, mean, wilson,
+};
 use rand::Rng;
 
 const RETURNS: [f64; 5] = [-411.2, -408.9, -420.5, -409.7, -350.1];
@@ -141,4 +143,18 @@ fn the_probability_of_improvement_is_covered() {
         covered += i32::from(interval.low <= 0.7602 && 0.7602 <= interval.high);
     }
     assert!((178..=197).contains(&covered), "{covered} of 200 intervals hold the true probability");
+}
+
+/// `scipy.stats.binomtest(k, n).proportion_ci(method="wilson")`.
+#[test]
+fn wilsons_interval_is_scipys() {
+    for (k, n, low, high) in [
+        (0, 10, 0.0, 0.277_532_799_862_889_9),
+        (10, 10, 0.722_467_200_137_110_2, 1.0),
+        (388, 400, 0.948_301_464_290_904_3, 0.982_756_979_034_857),
+    ] {
+        let interval = wilson(k, n);
+        assert!((interval.low - low).abs() < 1e-12 && (interval.high - high).abs() < 1e-12, "{interval:?}");
+    }
+    assert_eq!(wilson(0, 0), Interval { low: 0.0, high: 1.0 });
 }

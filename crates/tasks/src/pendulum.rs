@@ -238,7 +238,7 @@ impl Task for SwingUp {
 
     /// What the classic problem pays for the state that the step began in and for the torque during it.
     #[inline]
-    fn reward(&self, rod: &Rod, _command: &[f64]) -> f64 {
+    fn reward(&mut self, rod: &Rod, _command: &[f64]) -> f64 {
         -rod.cost
     }
 }

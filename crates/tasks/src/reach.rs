@@ -201,7 +201,7 @@ impl Task for ReachTask {
     }
 
     #[inline]
-    fn reward(&self, plant: &Rail, command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &Rail, command: &[f64]) -> f64 {
         let (away, command) = (plant.x - self.goal, command[0]);
         -away * away - self.command_cost * command * command
     }

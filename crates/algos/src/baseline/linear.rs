@@ -109,7 +109,13 @@ mod tests {
         let batch = Batch {
             obs,
             reward: vec![0.0; rows],
-            episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.25], last_state: vec![] }],
+            episodes: vec![Episode {
+                rows: 0..rows,
+                end: End::Truncated,
+                last_obs: vec![0.25],
+                last_state: vec![],
+                outcome: None,
+            }],
             ..Batch::default()
         };
         let mut baseline = LinearBaseline::new(1, 0, 1e-5);
@@ -130,7 +136,13 @@ mod tests {
         let batch = Batch {
             obs: vec![20.0, -1.0],
             reward: vec![0.0; 2],
-            episodes: vec![Episode { rows: 0..2, end: End::Truncated, last_obs: vec![0.5], last_state: vec![] }],
+            episodes: vec![Episode {
+                rows: 0..2,
+                end: End::Truncated,
+                last_obs: vec![0.5],
+                last_state: vec![],
+                outcome: None,
+            }],
             ..Batch::default()
         };
         let features = |o: f64, a: f64| [o, o * o, a, a * a, a * a * a, 1.0];
@@ -155,7 +167,13 @@ mod tests {
             obs: vec![0.5; rows],
             state,
             reward: vec![0.0; rows],
-            episodes: vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5], last_state: vec![1.0] }],
+            episodes: vec![Episode {
+                rows: 0..rows,
+                end: End::Truncated,
+                last_obs: vec![0.5],
+                last_state: vec![1.0],
+                outcome: None,
+            }],
             ..Batch::default()
         };
         let error = |state_dim| {

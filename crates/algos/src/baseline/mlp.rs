@@ -216,7 +216,13 @@ mod tests {
     fn batch(rows: usize) -> (Batch, Vec<f32>) {
         let obs: Vec<f32> = (0..rows).map(|i| ((i * 37 % 101) as f32) / 50.0 - 1.0).collect();
         let targets = obs.iter().map(|o| -300.0 + 80.0 * o * o).collect();
-        let episodes = vec![Episode { rows: 0..rows, end: End::Truncated, last_obs: vec![0.5], last_state: vec![] }];
+        let episodes = vec![Episode {
+            rows: 0..rows,
+            end: End::Truncated,
+            last_obs: vec![0.5],
+            last_state: vec![],
+            outcome: None,
+        }];
         (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)
     }
 

@@ -95,8 +95,15 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
         log_prob: (0..3).map(old).collect(),
         reward: advantage.to_vec(),
         episodes: (0..3)
-            .map(|i| Episode { rows: i..i + 1, end: End::Terminated, last_obs: vec![0.0], last_state: vec![] })
+            .map(|i| Episode {
+                rows: i..i + 1,
+                end: End::Terminated,
+                last_obs: vec![0.0],
+                last_state: vec![],
+                outcome: None,
+            })
             .collect(),
+        ..Batch::default()
     }
 }
 

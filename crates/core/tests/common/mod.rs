@@ -97,7 +97,7 @@ impl Task for Stay {
         out.copy_from_slice(&[plant.x, plant.v, plant.x * plant.v]);
     }
 
-    fn reward(&self, plant: &Point, command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &Point, command: &[f64]) -> f64 {
         -plant.x * plant.x - 0.01 * command.iter().map(|c| c * c).sum::<f64>()
     }
 

@@ -69,7 +69,7 @@ impl Task for Lift {
         plant.state(out);
     }
 
-    fn reward(&self, plant: &Pendulum, command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &Pendulum, command: &[f64]) -> f64 {
         -(plant.angle - FRAC_PI_2).powi(2) - 0.5 * (command[0] / MOTOR_LIMIT).powi(2)
     }
 }

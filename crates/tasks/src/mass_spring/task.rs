@@ -80,7 +80,7 @@ impl Task for MassSpringTask {
     }
 
     #[inline]
-    fn reward(&self, plant: &MassSpringPlant, command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &MassSpringPlant, command: &[f64]) -> f64 {
         let (y2, v2) = plant.lower();
         self.reward.value(y2 - self.goal, v2, command[0], self.motor_limit)
     }

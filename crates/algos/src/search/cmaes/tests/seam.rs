@@ -60,11 +60,11 @@ fn equal_scores_rank_by_number() {
 fn a_saved_state_goes_on_bit_for_bit() {
     for separable in [false, true] {
         let n = 200;
-        // So few candidates that a decomposition is due every seventh generation.
+        // So few candidates that a decomposition is due every eighth generation.
         let lower = Some(vec![-1.0; n]);
         let config = CmaesConfig { separable, popsize: Some(4), lower, restarts: 1, ..CmaesConfig::default() };
         let mut whole = search(config.clone(), &vec![1.0; n]);
-        for generation in 0..16 {
+        for generation in 0..18 {
             let asked = whole.ask();
             let mut resumed = Cmaes::resume(config.clone(), saved(whole.state())).unwrap();
             let scores = scores(ellipsoid, &asked);

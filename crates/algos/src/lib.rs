@@ -1,6 +1,8 @@
 //! Learners: generalised advantages, value baselines, PPO. Searches without gradients: CMA-ES, random search. They see
 //! policies, batches and scores, never an environment.
 
+#![forbid(unsafe_code)]
+
 mod adam;
 mod baseline;
 mod gae;

@@ -1,5 +1,7 @@
 //! `hwasp`: design a robot's body and its controller together.
 
+#![forbid(unsafe_code)]
+
 mod args;
 mod commands;
 mod failure;

@@ -2,6 +2,8 @@
 //! policy that composes a controller with the law. Random streams and rollouts are by name and by episode index, so that
 //! the number of threads changes nothing.
 
+#![forbid(unsafe_code)]
+
 mod check_env;
 mod design;
 mod environment;

@@ -2,6 +2,8 @@
 //! columns of a batch; dense layers run beside it. Both offer forward, vjp (reverse) and jvp (tangent), in `f32` and `f64`.
 //! This crate knows nothing of robots.
 
+#![forbid(unsafe_code)]
+
 mod dense;
 mod draw;
 pub mod fast;

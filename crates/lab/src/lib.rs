@@ -3,6 +3,8 @@
 //! A program that embeds training needs three calls: [`spec::load`] and [`spec::resolve`] an experiment,
 //! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
 
+#![forbid(unsafe_code)]
+
 mod assemble;
 pub mod compare;
 mod drawing;

@@ -4,6 +4,8 @@
 //! Every module gives a checked problem that hands out its [`Law`](hwasp_core::Law) and makes its environments. Physics
 //! (plant), purpose (task) and mechanism (law) are separate types; none of them knows how it is trained.
 
+#![forbid(unsafe_code)]
+
 pub mod mass_spring;
 pub mod pendulum;
 pub mod reach;

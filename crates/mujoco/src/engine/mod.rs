@@ -1,0 +1,24 @@
+//! One model and its state: [`Simulation`].
+//!
+//! A simulation is built from an MJCF text, and belongs to one environment. Names are looked up once and give indices
+//! ([`GeomId`], [`BodyId`], …), which hold for every simulation of the same text. Nothing here allocates after the
+//! construction. SI units; forces in N and N·m, angles in rad, positions and forces of bodies in the world's frame.
+//!
+//! Three habits of the engine end at this door. It resets the state when that turns bad and goes on: here that is a
+//! [`PhysicsFault`]. It writes `MUJOCO_LOG.TXT` into the working directory: here it writes no file. And what its model
+//! may not be edited to ends the process: here that is an [`EditError`].
+
+mod contact;
+mod edit;
+mod fault;
+mod log;
+mod names;
+mod shape;
+mod simulation;
+
+pub use contact::Contact;
+pub use edit::{EditError, ModelEdit};
+pub use fault::{PhysicsFault, Warning};
+pub use names::{ActuatorId, BodyId, GeomId, JointAddress, Kind, TendonId, UnknownName};
+pub use shape::Shape;
+pub use simulation::{BuildError, Simulation, Wrench};

@@ -1,0 +1,143 @@
+//! From names of an MJCF text to indices, once.
+
+use std::fmt;
+use std::ops::Range;
+
+use mujoco_rs::prelude::{MjModel, MjtObjBase};
+
+use super::Simulation;
+
+/// A geom of the model. Indices hold for all simulations of the same MJCF text; in another they may name something else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GeomId(pub(super) usize);
+
+/// A body of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BodyId(pub(super) usize);
+
+/// An actuator of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ActuatorId(pub(super) usize);
+
+impl ActuatorId {
+    /// Where its control stands in [`Simulation::ctrl`], for actuators with one control each (all but plugins).
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A tendon of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TendonId(pub(super) usize);
+
+/// Where a joint stands in the state.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JointAddress {
+    /// In [`Simulation::qpos`]: 1 for hinges and slides, 4 (w, x, y, z) for balls, 7 (position, then w, x, y, z) for free
+    /// joints.
+    pub qpos: Range<usize>,
+    /// In [`Simulation::qvel`] and generalised forces: 1, 3 or 6 (linear in the world's frame, angular in the body's).
+    pub dof: Range<usize>,
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A body.
+    Body,
+    /// A geom.
+    Geom,
+    /// A joint.
+    Joint,
+    /// An actuator.
+    Actuator,
+    /// A tendon.
+    Tendon,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Body => "body",
+            Self::Geom => "geom",
+            Self::Joint => "joint",
+            Self::Actuator => "actuator",
+            Self::Tendon => "tendon",
+        })
+    }
+}
+
+/// Nothing of that kind has that name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the model has no {kind} `{name}`; {}", known(*.kind, .names))]
+pub struct UnknownName {
+    /// What was looked for.
+    pub kind: Kind,
+    /// The name that was looked for.
+    pub name: String,
+    /// The names that the model has for things of that kind.
+    pub names: Vec<String>,
+}
+
+fn known(kind: Kind, names: &[String]) -> String {
+    if names.is_empty() { format!("it names no {kind}") } else { format!("it has: {}", names.join(", ")) }
+}
+
+impl Simulation {
+    /// The geom of that name.
+    pub fn geom(&self, name: &str) -> Result<GeomId, UnknownName> {
+        self.look_up(Kind::Geom, name).map(GeomId)
+    }
+
+    /// The body of that name. The world's is `world`.
+    pub fn body(&self, name: &str) -> Result<BodyId, UnknownName> {
+        self.look_up(Kind::Body, name).map(BodyId)
+    }
+
+    /// The actuator of that name.
+    pub fn actuator(&self, name: &str) -> Result<ActuatorId, UnknownName> {
+        self.look_up(Kind::Actuator, name).map(ActuatorId)
+    }
+
+    /// The tendon of that name.
+    pub fn tendon(&self, name: &str) -> Result<TendonId, UnknownName> {
+        self.look_up(Kind::Tendon, name).map(TendonId)
+    }
+
+    /// Where the joint of that name stands in the state.
+    pub fn joint(&self, name: &str) -> Result<JointAddress, UnknownName> {
+        let id = self.look_up(Kind::Joint, name)?;
+        let model = self.model();
+        Ok(JointAddress {
+            qpos: range(model.jnt_qposadr(), id, self.qpos().len()),
+            dof: range(model.jnt_dofadr(), id, self.qvel().len()),
+        })
+    }
+
+    /// Compares every name: the engine's own look-up wants a C string, and this is done once.
+    fn look_up(&self, kind: Kind, name: &str) -> Result<usize, UnknownName> {
+        let (object, count) = objects(self.model(), kind);
+        let names = || (0..count).map(|id| self.model().id_to_name(object, id));
+        names().position(|known| known == Some(name)).ok_or_else(|| UnknownName {
+            kind,
+            name: name.to_owned(),
+            names: names().flatten().map(str::to_owned).collect(),
+        })
+    }
+}
+
+fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
+    match kind {
+        Kind::Body => (MjtObjBase::mjOBJ_BODY, model.body_mass().len()),
+        Kind::Geom => (MjtObjBase::mjOBJ_GEOM, model.geom_size().len()),
+        Kind::Joint => (MjtObjBase::mjOBJ_JOINT, model.jnt_qposadr().len()),
+        Kind::Actuator => (MjtObjBase::mjOBJ_ACTUATOR, model.nactuator() as usize),
+        Kind::Tendon => (MjtObjBase::mjOBJ_TENDON, model.ntendon() as usize),
+    }
+}
+
+/// From the address of one joint to that of the next; joints stand in their order.
+fn range(addresses: &[i32], id: usize, end: usize) -> Range<usize> {
+    addresses[id] as usize..addresses.get(id + 1).map_or(end, |&next| next as usize)
+}

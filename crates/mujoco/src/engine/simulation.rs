@@ -186,6 +186,11 @@ impl Simulation {
         self.model().body_mass()[body.0]
     }
 
+    /// Coefficients of friction of a geom: sliding, spinning (m), rolling (m).
+    pub fn friction(&self, geom: GeomId) -> [f64; 3] {
+        self.model().geom_friction()[geom.0]
+    }
+
     pub(super) fn model(&self) -> &MjModel {
         self.data.model()
     }

@@ -1,0 +1,201 @@
+//! What of the grasping tasks can be chosen.
+
+use hwasp_core::Initial;
+
+use super::GraspError;
+use crate::hand::{DESIGN_LEN, HandDescription, HandRange, PalmMotion};
+
+/// Shapes of objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShapeKind {
+    /// A ball.
+    Sphere,
+    /// A cuboid.
+    Box,
+    /// An upright cylinder.
+    Cylinder,
+    /// An ellipsoid.
+    Ellipsoid,
+}
+
+impl ShapeKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Sphere, Self::Box, Self::Cylinder, Self::Ellipsoid];
+
+    /// Its name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Box => "box",
+            Self::Cylinder => "cylinder",
+            Self::Ellipsoid => "ellipsoid",
+        }
+    }
+}
+
+/// Where an object's inertia comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inertia {
+    /// Each principal moment drawn from this range alone, kg·m², as the paper has it; triples that no rigid body has are
+    /// drawn again.
+    Independent([f64; 2]),
+    /// That of a homogeneous body of its mass, shape and size.
+    Physical,
+}
+
+/// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraspReward {
+    /// Per metre between palm and object.
+    pub distance: f64,
+    /// Per distal link that touches the object.
+    pub contact: f64,
+    /// Heights of the object's lowest point, m, rising, and what is given from there on.
+    pub height: Vec<(f64, f64)>,
+}
+
+impl Default for GraspReward {
+    fn default() -> Self {
+        Self { distance: -2.0, contact: 0.1, height: vec![(0.005, 0.5), (0.020, 1.0), (0.050, 2.0), (0.100, 4.0)] }
+    }
+}
+
+/// A grasping task.
+///
+/// | field | default | purpose | source |
+/// |---|---|---|---|
+/// | `palm` | vertical | Z-Grasp or 3D-Grasp | \[P\] |
+/// | `range`, `initial` | large, logit ±5 | limits and start of the design | \[M\] |
+/// | `shapes` | all four | which objects there are | \[P\] |
+/// | `size` | 40 to 100 mm | each edge of the bounding box | \[P\] |
+/// | `mass` | 100 to 500 g | | \[P\] |
+/// | `friction` | 0.5 to 1 | sliding, on hand and floor | \[P\] |
+/// | `inertia` | 1e-4 to 5e-3 kg·m² | each principal moment | \[P\] |
+/// | `height` | 150 to 250 mm | of the palm above the object's top at the start | \[M\] |
+/// | `offset` | 0 (3D: 50 mm) | the object's place, ± in x and y | \[M\] |
+/// | `yaw`, `lying` | 0, 0 | turned by up to ±, share of cylinders on their side | \[M\] |
+/// | `sensor_noise` | 1 mm, 0.08 mm | palm and object position; motor travel | \[P\] |
+/// | `actuation_noise` | 1 mm, 0.08 mm | palm target; motor travel | \[P\] |
+/// | `disturbance` | 0.02 N, 0.002 N·m | on palm and object, redrawn each step | \[P\] |
+/// | `horizon` | 500 | steps of 10 ms | \[P\] |
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraspSettings {
+    /// How the palm may move.
+    pub palm: PalmMotion,
+    /// Everything about the hand that is not designed.
+    pub hand: HandDescription,
+    /// Limits of the design.
+    pub range: HandRange,
+    /// Where the design begins.
+    pub initial: [Initial; DESIGN_LEN],
+    /// Shapes of objects, at least one.
+    pub shapes: Vec<ShapeKind>,
+    /// Edges of the bounding box, from and to, m.
+    pub size: [f64; 2],
+    /// Mass, from and to, kg.
+    pub mass: [f64; 2],
+    /// Friction, from and to.
+    pub friction: [f64; 2],
+    /// Inertia.
+    pub inertia: Inertia,
+    /// Height of the palm above the object's top at the start, from and to, m.
+    pub height: [f64; 2],
+    /// The object's place in x and y, ± m.
+    pub offset: f64,
+    /// The object's yaw, ± rad.
+    pub yaw: f64,
+    /// The share of cylinders that lie.
+    pub lying: f64,
+    /// Standard deviations of the sensors: positions, m, and motor travel, m.
+    pub sensor_noise: [f64; 2],
+    /// Standard deviations of what the actuators do: palm, m, and motor travel, m. Never accumulates.
+    pub actuation_noise: [f64; 2],
+    /// Standard deviations of force, N, and torque, N·m, on palm and object, per axis.
+    pub disturbance: [f64; 2],
+    /// Motion of the palm in a step, ± m.
+    pub palm_step: f64,
+    /// The reward.
+    pub reward: GraspReward,
+    /// Environment steps of an episode.
+    pub horizon: usize,
+}
+
+impl Default for GraspSettings {
+    fn default() -> Self {
+        Self {
+            palm: PalmMotion::Vertical,
+            hand: HandDescription::default(),
+            range: HandRange::Large,
+            initial: [Initial::Logit { half_width: 5.0 }; DESIGN_LEN],
+            shapes: ShapeKind::ALL.to_vec(),
+            size: [0.040, 0.100],
+            mass: [0.100, 0.500],
+            friction: [0.5, 1.0],
+            inertia: Inertia::Independent([1e-4, 5e-3]),
+            height: [0.150, 0.250],
+            offset: 0.0,
+            yaw: 0.0,
+            lying: 0.0,
+            sensor_noise: [1e-3, 8e-5],
+            actuation_noise: [1e-3, 8e-5],
+            disturbance: [0.02, 0.002],
+            palm_step: 0.002,
+            reward: GraspReward::default(),
+            horizon: 500,
+        }
+    }
+}
+
+impl GraspSettings {
+    /// Whether objects can be drawn from them and a hand be moved by them.
+    pub(super) fn check(&self) -> Result<(), GraspError> {
+        let setting = |name, value: String, limits| Err(GraspError::Setting { name, value, limits });
+        if self.shapes.is_empty() {
+            return setting("shapes", "[]".into(), "at least one of sphere, box, cylinder and ellipsoid");
+        }
+        if self.horizon == 0 {
+            return setting("horizon", "0".into(), "at least 1");
+        }
+        let inertia = match self.inertia {
+            Inertia::Independent(range) => range,
+            Inertia::Physical => [1.0; 2],
+        };
+        for (name, [lo, hi], least) in [
+            ("size", self.size, 1e-3),
+            ("mass", self.mass, 1e-6),
+            ("friction", self.friction, 0.0),
+            ("inertia", inertia, 1e-9),
+            ("height", self.height, 0.0),
+        ] {
+            if !(lo.is_finite() && hi.is_finite() && least <= lo && lo <= hi) {
+                return setting(
+                    name,
+                    format!("{lo} to {hi}"),
+                    "a range of positive finite numbers, the smaller one first",
+                );
+            }
+        }
+        for (name, value) in [
+            ("offset", self.offset),
+            ("yaw", self.yaw),
+            ("lying", self.lying),
+            ("sensor_noise[0]", self.sensor_noise[0]),
+            ("sensor_noise[1]", self.sensor_noise[1]),
+            ("actuation_noise[0]", self.actuation_noise[0]),
+            ("actuation_noise[1]", self.actuation_noise[1]),
+            ("disturbance[0]", self.disturbance[0]),
+            ("disturbance[1]", self.disturbance[1]),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return setting(name, value.to_string(), "a finite number that is not negative");
+            }
+        }
+        if !(self.palm_step.is_finite() && self.palm_step > 0.0) {
+            return setting("palm_step", self.palm_step.to_string(), "a positive length");
+        }
+        if self.reward.height.windows(2).any(|pair| pair[0].0 >= pair[1].0) {
+            return setting("reward.height", format!("{:?}", self.reward.height), "in rising order of heights");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,122 @@
+//! What grasping is about: the observation, the reward and success.
+
+use hwasp_core::{CommandPort, Dimension, EnvSpec, Outcome, Port, Stream, Task};
+use rand::RngExt;
+
+use super::object::Object;
+use super::plant::GraspPlant;
+use super::settings::GraspSettings;
+use crate::hand::names;
+
+/// The steps at the end of an episode over which a grasp has to hold.
+pub const HOLD_STEPS: usize = 100;
+/// How high the object's lowest point has to be over all of them, m.
+pub const HOLD_HEIGHT: f64 = 0.100;
+/// The share of them in which thumb and a finger have to touch the object.
+pub const HOLD_TOUCH: f64 = 0.9;
+/// How far the object may move relative to the palm over them, m.
+pub const HOLD_DRIFT: f64 = 0.010;
+
+/// One step of the hold.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moment {
+    clearance: f64,
+    touches: bool,
+    /// The object relative to the palm, m.
+    held: [f64; 3],
+}
+
+/// Z-Grasp or 3D-Grasp.
+#[derive(Clone, Debug)]
+pub struct GraspTask {
+    settings: GraspSettings,
+    /// The last [`HOLD_STEPS`] steps, step t at t modulo their number.
+    moments: Vec<Moment>,
+    taken: usize,
+    kind: &'static str,
+}
+
+impl GraspTask {
+    pub(super) fn new(settings: GraspSettings) -> Self {
+        let kind = settings.shapes[0].name();
+        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind }
+    }
+
+    /// Whether the last steps were a hold.
+    fn success(&self) -> bool {
+        if self.taken < HOLD_STEPS {
+            return false;
+        }
+        let first = self.moments[self.taken % HOLD_STEPS].held;
+        let touches = self.moments.iter().filter(|m| m.touches).count();
+        self.moments.iter().all(|m| m.clearance >= HOLD_HEIGHT && distance(m.held, first) <= HOLD_DRIFT)
+            && touches as f64 >= HOLD_TOUCH * HOLD_STEPS as f64
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+impl Task for GraspTask {
+    type Plant = GraspPlant;
+
+    fn spec(&self) -> EnvSpec {
+        let port = |name: &str, dimension| Port { name: name.to_owned(), dimension };
+        let lengths = ["palm_x", "palm_y", "palm_z", "object_x", "object_y", "object_z", "size_x", "size_y", "size_z"];
+        let mut observation: Vec<Port> = lengths.iter().map(|name| port(name, Dimension::Length)).collect();
+        observation.push(port("motor_travel", Dimension::Length));
+        observation.push(port("motor_torque", Dimension::Torque));
+        let mut state = vec![port("motor_travel", Dimension::Length)];
+        state.extend(names::JOINTS.iter().map(|joint| port(&format!("{joint}_angle"), Dimension::Angle)));
+        let mut effort: Vec<Port> =
+            names::JOINTS.iter().map(|joint| port(&format!("{joint}_torque"), Dimension::Torque)).collect();
+        effort.push(port("motor_torque", Dimension::Torque));
+        let motor = |name: &str, most: f64| CommandPort {
+            name: name.to_owned(),
+            dimension: Dimension::Length,
+            lo: -most,
+            hi: most,
+        };
+        let palm = self.settings.palm.commands().iter();
+        let mut command: Vec<CommandPort> = palm.map(|name| motor(name, self.settings.palm_step)).collect();
+        command.push(motor("motor", self.settings.hand.transmission.step_limit));
+        EnvSpec { observation, state, effort, command, horizon: self.settings.horizon }
+    }
+
+    fn reset(&mut self, plant: &mut GraspPlant, rng: &mut Stream) {
+        let [from, to] = self.settings.height;
+        let above = from + (to - from) * rng.random::<f64>();
+        let object = Object::draw(&self.settings, rng);
+        self.kind = object.kind.name();
+        self.taken = 0;
+        let top = object.bounding_box()[2];
+        // Settings were checked: what is drawn from them is a body.
+        let started = plant.start(object, top + above, rng);
+        debug_assert!(started.is_ok(), "{started:?}");
+    }
+
+    fn observe(&self, plant: &GraspPlant, out: &mut [f64]) {
+        plant.observe(out);
+    }
+
+    fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {
+        let (palm, object, clearance) = (plant.palm(), plant.object_position(), plant.clearance());
+        let touching = plant.touching();
+        let digit = |d: usize| touching[2 * d] || touching[2 * d + 1];
+        self.moments[self.taken % HOLD_STEPS] = Moment {
+            clearance,
+            touches: digit(0) && (digit(1) || digit(2)),
+            held: [0, 1, 2].map(|i| object[i] - palm[i]),
+        };
+        self.taken += 1;
+        let reward = &self.settings.reward;
+        let distal = [1, 3, 5].iter().filter(|&&link| touching[link]).count();
+        let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
+        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        Some(Outcome { kind: self.kind, success: self.success() })
+    }
+}

@@ -1,0 +1,53 @@
+//! The paper's underactuated hand (section 6 and appendix B): one motor winds three tendons, each of which closes a thumb or
+//! a finger of two links against the springs in its joints.
+//!
+//! ```text
+//!        z ▲   palm          finger bases (±25, +35, 0) mm
+//!     ═════╪═════  z = 0     thumb base     (0, -35, 0) mm
+//!    ⊙     └──▶ y  ⊙  proximal joints
+//!     ╲           ╱   50 mm   angle 0: both links 45° outward, a hard stop
+//!      ⊙         ⊙  distal joints    angle > 0 closes, to 1.57 rad
+//!       ╲       ╱     40 mm   links are capsules of radius 12 mm
+//!     thumb   finger1, finger2
+//! ```
+//!
+//! [`HandDescription`] has every number of it that is not designed. The twelve that are ([`HandRange`]) enter the
+//! [`TendonHand`] law, which stands between the motor and the joints, or the tendons of [`mjcf`] with [`Drive::NativeTendon`].
+//! [`FreeClosing`], [`droop`], [`pinch_band`] and [`PinchLift`] say of a design what can be said without a simulation.
+//!
+//! Nothing here needs the engine.
+//!
+//! ```
+//! use hwasp_mujoco::hand::{Drive, HandDescription, MjcfOptions, SMALL_CENTRE, TendonHand, TendonHandSettings, mjcf};
+//!
+//! let hand = HandDescription::default();
+//! let law = TendonHand::new(&hand.transmission, &TendonHandSettings::default())?;
+//! let tensions = law.tensions(&SMALL_CENTRE, 0.0002, 0.004, &[0.0; 6]); // N
+//! assert!(tensions.iter().sum::<f64>() <= 75.0);
+//!
+//! let drive = Drive::NativeTendon { design: SMALL_CENTRE };
+//! let xml = mjcf(&hand, &MjcfOptions { drive, ..MjcfOptions::default() })?;
+//! assert!(xml.starts_with("<mujoco"));
+//! # Ok::<(), hwasp_mujoco::hand::HandError>(())
+//! ```
+
+mod closing;
+mod description;
+mod error;
+mod law;
+mod mjcf;
+pub mod names;
+mod space;
+mod statics;
+mod xml;
+
+pub use closing::{ClosingPoint, FreeClosing, closing_chart};
+pub use description::{
+    FingerDescription, HandDescription, JointDescription, LinkDescription, ObjectDescription, PalmDescription,
+    TransmissionDescription,
+};
+pub use error::HandError;
+pub use law::{PalmMotion, TendonHand, TendonHandSettings};
+pub use mjcf::{Drive, MjcfOptions, mjcf};
+pub use space::{DESIGN_LEN, HandRange, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
+pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band};

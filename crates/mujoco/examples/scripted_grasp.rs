@@ -9,7 +9,7 @@ use std::error::Error;
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
 use hwasp_mujoco::grasp::{Grasp, GraspSettings, GraspTask, Script, ShapeKind};
-use hwasp_mujoco::hand::{DESIGN_LEN, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
+use hwasp_tasks::hand::{DESIGN_LEN, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
 
 /// Found by a search with this script (spec of the task).
 const SEARCHED: [f64; DESIGN_LEN] =

@@ -47,7 +47,7 @@ pub use settings::{GraspReward, GraspSettings, Inertia, ShapeKind};
 pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 
 use crate::engine::{BuildError, Simulation, UnknownName};
-use crate::hand::{self, DESIGN_LEN, HandError, MjcfOptions, TendonHand, TendonHandSettings, mjcf, names};
+use hwasp_tasks::hand::{self, DESIGN_LEN, HandError, MjcfOptions, TendonHand, TendonHandSettings, mjcf, names};
 
 /// Why settings make no grasping task.
 #[derive(Clone, Debug, Error, PartialEq)]

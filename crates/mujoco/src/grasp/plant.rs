@@ -7,7 +7,7 @@ use rand_distr::StandardNormal;
 use super::object::{Object, vertical};
 use super::settings::GraspSettings;
 use crate::engine::{BodyId, EditError, GeomId, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
-use crate::hand::{TransmissionDescription, names};
+use hwasp_tasks::hand::{TransmissionDescription, names};
 
 /// Simulation steps of an environment step: 10 ms of 1 ms each \[P\].
 pub const SUBSTEPS: usize = 10;

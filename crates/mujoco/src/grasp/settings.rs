@@ -3,7 +3,7 @@
 use hwasp_core::Initial;
 
 use super::GraspError;
-use crate::hand::{DESIGN_LEN, HandDescription, HandRange, PalmMotion};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PalmMotion};
 
 /// Shapes of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

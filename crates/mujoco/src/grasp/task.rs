@@ -6,7 +6,7 @@ use rand::RngExt;
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::GraspSettings;
-use crate::hand::names;
+use hwasp_tasks::hand::names;
 
 /// The steps at the end of an episode over which a grasp has to hold.
 pub const HOLD_STEPS: usize = 100;

@@ -4,7 +4,7 @@
 
 use hwasp_core::{Hardware, Initial, Law};
 use hwasp_diff::{GradCheckSettings, gradcheck};
-use hwasp_mujoco::hand::{
+use hwasp_tasks::hand::{
     DESIGN_LEN, FreeClosing, HandDescription, HandError, HandRange, PAPER_HWASP, PalmMotion, SMALL_CENTRE, TendonHand,
     TendonHandSettings, TransmissionDescription,
 };

@@ -18,7 +18,7 @@
 //! Nothing here needs the engine.
 //!
 //! ```
-//! use hwasp_mujoco::hand::{Drive, HandDescription, MjcfOptions, SMALL_CENTRE, TendonHand, TendonHandSettings, mjcf};
+//! use hwasp_tasks::hand::{Drive, HandDescription, MjcfOptions, SMALL_CENTRE, TendonHand, TendonHandSettings, mjcf};
 //!
 //! let hand = HandDescription::default();
 //! let law = TendonHand::new(&hand.transmission, &TendonHandSettings::default())?;
@@ -28,7 +28,7 @@
 //! let drive = Drive::NativeTendon { design: SMALL_CENTRE };
 //! let xml = mjcf(&hand, &MjcfOptions { drive, ..MjcfOptions::default() })?;
 //! assert!(xml.starts_with("<mujoco"));
-//! # Ok::<(), hwasp_mujoco::hand::HandError>(())
+//! # Ok::<(), hwasp_tasks::hand::HandError>(())
 //! ```
 
 mod closing;

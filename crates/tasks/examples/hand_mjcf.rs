@@ -1,7 +1,7 @@
 //! Prints the hand's model, to look at it in any viewer of `MuJoCo`: `cargo run --example hand_mjcf -- native > hand.xml`.
 //! Without `native` the joints are driven by torques.
 
-use hwasp_mujoco::hand::{Drive, HandDescription, HandError, MjcfOptions, SMALL_CENTRE, mjcf};
+use hwasp_tasks::hand::{Drive, HandDescription, HandError, MjcfOptions, SMALL_CENTRE, mjcf};
 
 #[allow(clippy::print_stdout)] // what it is for
 fn main() -> Result<(), HandError> {

@@ -1,5 +1,7 @@
 //! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
 
+mod problem;
+
 use std::sync::Arc;
 
 use hwasp_algos::{BaselineConfig, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
@@ -8,15 +10,13 @@ use hwasp_core::{
     stream,
 };
 use hwasp_diff::Activation;
-use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringError, MassSpringSettings};
-use hwasp_tasks::pendulum::{Pendulum, PendulumError, PendulumSettings};
-use hwasp_tasks::reach::{Reach, ReachError, ReachSettings};
+use hwasp_tasks::mass_spring::MassSpringError;
+use hwasp_tasks::pendulum::PendulumError;
+use hwasp_tasks::reach::ReachError;
 use thiserror::Error;
 
-use crate::spec::{
-    ActivationKind, Algorithm, BaselineKind, DesignSpec, InitialSpec, InterfaceKind, MassSpringSpec, Method, Place,
-    Problem, RewardKind, Spec,
-};
+use crate::spec::{ActivationKind, Algorithm, BaselineKind, Method, Place, Spec};
+use problem::{initial, problem};
 
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
@@ -30,6 +30,18 @@ pub enum AssembleError {
     /// The pendulum's settings.
     #[error(transparent)]
     Pendulum(#[from] PendulumError),
+    /// The grasping task's settings.
+    #[cfg(feature = "mujoco")]
+    #[error(transparent)]
+    Grasp(#[from] hwasp_mujoco::grasp::GraspError),
+    /// A problem whose physics are not in this program.
+    #[error(
+        "{problem} needs the MuJoCo engine, and this program was built without it: build it with the feature \"mujoco\""
+    )]
+    NoEngine {
+        /// The problem.
+        problem: &'static str,
+    },
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
@@ -139,93 +151,17 @@ impl Assembly {
     }
 }
 
-fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
-    let initial = initial(&spec.design, spec);
-    match &spec.task.problem {
-        Problem::Stiffness(p) => {
-            let settings = MassSpringSettings {
-                max_total_stiffness: p.stiffness_total_max,
-                bar_length: p.bar,
-                ..mass_spring(&p.base, spec.task.horizon, initial)
-            };
-            let deployment = MassSpring::stiffness(MassSpringSettings { effort_limit: None, ..settings.clone() })?;
-            Ok(mass_spring_problem(&MassSpring::stiffness(settings)?, &deployment))
-        }
-        Problem::BarLength(p) => {
-            let settings = MassSpringSettings {
-                max_total_length: p.length_total_max,
-                spring_stiffness: p.spring,
-                interface_stiffness: p.interface_stiffness,
-                interface_damping: p.interface_damping,
-                ..mass_spring(&p.base, spec.task.horizon, initial)
-            };
-            let interface = match p.interface {
-                InterfaceKind::Soft => Interface::Soft,
-                InterfaceKind::Rigid => Interface::Rigid,
-            };
-            // The bar that is built is rigid and nothing clips its forces.
-            let deployment = MassSpringSettings { effort_limit: None, ..settings.clone() };
-            let deployment = MassSpring::bar(deployment, Interface::Rigid)?;
-            Ok(mass_spring_problem(&MassSpring::bar(settings, interface)?, &deployment))
-        }
-        Problem::Reach(p) => {
-            let settings =
-                ReachSettings { goal: p.goal, horizon: spec.task.horizon, initial, ..ReachSettings::default() };
-            let reach = Reach::new(settings)?;
-            let world = World { law: reach.law(), make: Arc::new(reach.clone()) };
-            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![Some(reach.optimum())] })
-        }
-        Problem::Pendulum => {
-            let pendulum = Pendulum::new(&PendulumSettings { horizon: spec.task.horizon, initial })?;
-            let world = World { law: pendulum.law(), make: Arc::new(pendulum) };
-            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
-        }
-    }
-}
-
-fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Problems {
-    let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
-    Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] }
-}
-
-fn mass_spring(base: &MassSpringSpec, horizon: usize, initial: Initial) -> MassSpringSettings {
-    let paper = MassSpringSettings::default();
-    // The experiment names the force; the motor's constants stay and its current gives it.
-    let max_current = base.motor_limit * paper.shaft_radius / paper.torque_constant;
-    let settings = MassSpringSettings {
-        count: base.segments,
-        upper_mass: base.mass_1,
-        lower_mass: base.mass_2,
-        goal: base.goal,
-        max_current,
-        effort_limit: base.effort_clip,
-        horizon,
-        initial,
-        ..paper
-    };
-    match base.reward {
-        RewardKind::Soft => settings,
-        RewardKind::Hard => settings.with_hard_reward(),
-    }
-}
-
-fn initial(design: &DesignSpec, spec: &Spec) -> Initial {
-    let group = spec.task.group();
-    match design.initial {
-        InitialSpec::Logit => Initial::Logit { half_width: design.logit_half_width },
-        InitialSpec::Middle => Initial::Value(0.5 * (group.lo + group.hi)),
-        InitialSpec::Value { value, .. } => Initial::Value(value),
-    }
-}
-
 fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
     // A fixed parameter keeps the value that a free one would have begun with; a given one to the last bit, which the
     // way through the squash and back would not.
     let space = law.design();
-    let first = match initial(&spec.design, spec) {
-        Initial::Value(value) => vec![value; space.len()],
-        Initial::Logit { .. } => space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0))),
-    };
+    let mut first = space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0)));
+    let starts = initial(spec).into_iter().zip(space.groups()).flat_map(|(initial, g)| vec![initial; g.count]);
+    for (first, initial) in first.iter_mut().zip(starts) {
+        if let Initial::Value(value) = initial {
+            *first = value;
+        }
+    }
     let placements = first.iter().enumerate().map(|(i, &value)| match spec.design.place_of(i) {
         Place::Graph => Placement::Graph,
         Place::Action => Placement::Action,

@@ -10,6 +10,7 @@ use super::Method;
 use super::fault::{shorten, show};
 use super::names::named;
 use super::section::Section;
+use super::suggest::{listed, nearest};
 use super::task::{GroupSpec, TaskSpec};
 use super::tree::{Node, Value};
 use super::values::with_unit;
@@ -26,20 +27,28 @@ named! {
     }
 }
 
-/// Where every parameter begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Where the parameters begin.
+#[derive(Clone, Debug, PartialEq)]
 pub enum InitialSpec {
-    /// The unbounded parameter uniform within ±`logit_half_width`.
+    /// The unbounded parameters uniform within ±`logit_half_width`.
     Logit,
-    /// In the middle of its limits.
+    /// In the middle of their limits.
     Middle,
-    /// At this value.
-    Value {
-        /// In SI.
-        value: f64,
-        /// What it measures.
-        dimension: Dimension,
-    },
+    /// The parameters of these groups at these values, others in the middle of their limits.
+    Values(Vec<InitialValue>),
+}
+
+/// Where the parameters of a group begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialValue {
+    /// The group.
+    pub group: &'static str,
+    /// In SI.
+    pub value: f64,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// Whether it is the task's only group, which needs no name.
+    only: bool,
 }
 
 /// Parameters that sit elsewhere than the others.
@@ -49,6 +58,8 @@ pub struct PlacedRange {
     pub group: &'static str,
     /// Their indices in it.
     pub range: Range<usize>,
+    /// The index of its first parameter in the design.
+    pub first: usize,
     /// Where they sit.
     pub place: Place,
 }
@@ -59,7 +70,7 @@ pub struct PlacedRange {
 /// |---|---|---|---|
 /// | `placement` | hwasp: "graph", fixed: "fixed", else "action" | where the parameters sit | |
 /// | `placements` | none | where some of them sit: `{ "stiffness[0]" = "action", "stiffness[3..5]" = "fixed" }` (3 and 4), or a list of one place each | |
-/// | `initial` | "logit" | `logit`, `middle` or a quantity | inside of the parameter's limits |
+/// | `initial` | "logit" | `logit`, `middle`, a quantity, or one for each group, `{ thumb_distal_radius = "6 mm" }`; groups left out begin in the middle | inside of the parameter's limits |
 /// | `logit_half_width` | 5.0 | half width of the uniform start before the squash | 0 to 20 |
 /// | `learning_rate_scale` | 1.0 | times the policy's learning rate | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -80,12 +91,13 @@ pub struct DesignSpec {
 impl DesignSpec {
     /// Where parameter `i` sits.
     pub fn place_of(&self, i: usize) -> Place {
-        self.placements.iter().find(|placed| placed.range.contains(&i)).map_or(self.placement, |placed| placed.place)
+        let here = |placed: &&PlacedRange| i >= placed.first && placed.range.contains(&(i - placed.first));
+        self.placements.iter().find(here).map_or(self.placement, |placed| placed.place)
     }
 
     /// Reads the table for the parameters of a task.
     pub(super) fn read(mut s: Section<'_>, method: Method, task: &TaskSpec) -> Self {
-        let group = task.group();
+        let groups = task.groups();
         let default = match method {
             Method::Hwasp => Place::Graph,
             Method::Fixed => Place::Fixed,
@@ -94,55 +106,80 @@ impl DesignSpec {
         };
         let spec = Self {
             placement: s.choice("placement", Place::ALL).unwrap_or(default),
-            initial: read_initial(&mut s, &group),
+            initial: read_initial(&mut s, &groups),
             logit_half_width: s.number("logit_half_width", 5.0, 0.0..=20.0),
             learning_rate_scale: s.number("learning_rate_scale", 1.0, 0.0..=1000.0),
-            placements: read_placements(&mut s, &group),
+            placements: read_placements(&mut s, &groups),
         };
         s.finish();
         spec
     }
 }
 
-fn read_initial(s: &mut Section<'_>, group: &GroupSpec) -> InitialSpec {
+fn read_initial(s: &mut Section<'_>, groups: &[GroupSpec]) -> InitialSpec {
     let Some(node) = s.take("initial") else { return InitialSpec::Logit };
-    match &node.value {
-        Value::Text(text) if text == "logit" => return InitialSpec::Logit,
-        Value::Text(text) if text == "middle" => return InitialSpec::Middle,
-        Value::Text(text) if !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.')) => {
+    match (&node.value, groups) {
+        (Value::Text(text), _) if text == "logit" => InitialSpec::Logit,
+        (Value::Text(text), _) if text == "middle" => InitialSpec::Middle,
+        (Value::Text(text), _) if !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.')) => {
             let hint = "it is \"logit\", \"middle\" or a quantity".to_owned();
             s.wrong("initial", node, "is no start that is known", Some(hint));
-            return InitialSpec::Logit;
+            InitialSpec::Logit
         }
-        _ => {}
+        (Value::Table(table), _) => {
+            let mut values = Vec::new();
+            for (name, entry) in table {
+                let key = format!("initial.{}", shorten(name, 60));
+                if let Some(group) = groups.iter().find(|group| group.name == name) {
+                    values.extend(read_value(s, &key, &entry.node, group, groups.len() == 1));
+                } else {
+                    let names = groups.iter().map(|group| group.name);
+                    let hint = nearest(name, names.clone()).map(|near| format!("did you mean `{near}`?"));
+                    let message = format!("design.{key} is none of the task's parameters: {}", listed(names));
+                    s.reader.fault(Some(&entry.key), &s.path(&key), message, hint);
+                }
+            }
+            InitialSpec::Values(values)
+        }
+        (_, [group]) => {
+            read_value(s, "initial", node, group, true).map_or(InitialSpec::Logit, |v| InitialSpec::Values(vec![v]))
+        }
+        (_, groups) => {
+            let hint = format!("name the parameters: {{ {} = … }}", groups[0].name);
+            s.wrong("initial", node, &format!("is one value for {} different parameters", groups.len()), Some(hint));
+            InitialSpec::Logit
+        }
     }
-    let range = f64::NEG_INFINITY..=f64::INFINITY;
-    let Some(value) = s.checked_quantity("initial", node, group.dimension, 0.5 * (group.lo + group.hi), &range) else {
-        return InitialSpec::Logit;
-    };
-    if value > group.lo && value < group.hi {
-        return InitialSpec::Value { value, dimension: group.dimension };
-    }
-    // The limits depend on other keys; where those are wrong, this may well be right.
-    if s.reader.sound(&["task.segments", "task.stiffness_total_max", "task.length_total_max"]) {
-        let (lo, hi) = (show(group.lo), with_unit(group.hi, group.dimension));
-        let hint = format!("each of the {} begins there, and the squash has no inverse at its limits", group.count);
-        s.wrong("initial", node, &format!("is not inside ({lo}, {hi})"), Some(hint));
-    }
-    InitialSpec::Logit
 }
 
-fn read_placements(s: &mut Section<'_>, group: &GroupSpec) -> Vec<PlacedRange> {
+fn read_value(s: &Section<'_>, key: &str, node: &Node, group: &GroupSpec, only: bool) -> Option<InitialValue> {
+    let &GroupSpec { name, dimension, lo, hi, count, .. } = group;
+    let value = s.checked_quantity(key, node, dimension, 0.5 * (lo + hi), &(f64::NEG_INFINITY..=f64::INFINITY))?;
+    if value > lo && value < hi {
+        return Some(InitialValue { group: name, value, dimension, only });
+    }
+    // The limits depend on other keys; where those are wrong, this may well be right.
+    if s.reader.sound(&["task.segments", "task.stiffness_total_max", "task.length_total_max", "task.range"]) {
+        let (lo, hi) = (show(lo), with_unit(hi, dimension));
+        let start = if count == 1 { "it".to_owned() } else { format!("each of the {count}") };
+        let hint = format!("{start} begins there, and the squash has no inverse at its limits");
+        s.wrong(key, node, &format!("is not inside ({lo}, {hi})"), Some(hint));
+    }
+    None
+}
+
+fn read_placements(s: &mut Section<'_>, groups: &[GroupSpec]) -> Vec<PlacedRange> {
     let Some(node) = s.take("placements") else { return Vec::new() };
-    let example = format!("write it like {{ \"{}[0]\" = \"action\" }}, or as a list of one place each", group.name);
+    let count = groups.iter().map(|group| group.count).sum::<usize>();
+    let example = format!("write it like {{ \"{}[0]\" = \"action\" }}, or as a list of one place each", groups[0].name);
     let mut placed: Vec<PlacedRange> = Vec::new();
     match &node.value {
         Value::Table(table) => {
             for (name, entry) in table {
                 let key = format!("placements.\"{}\"", shorten(name, 60));
                 let place = s.chosen(&key, &entry.node, Place::ALL);
-                match parse_range(name, group) {
-                    Ok(range) => placed.extend(place.map(|place| PlacedRange { group: group.name, range, place })),
+                match parse_range(name, groups) {
+                    Ok((group, range)) => placed.extend(place.map(|place| placed_range(group, range, place))),
                     Err(message) => {
                         let key = s.path(&key);
                         s.reader.fault(Some(&entry.key), &key, message, Some(example.clone()));
@@ -150,26 +187,31 @@ fn read_placements(s: &mut Section<'_>, group: &GroupSpec) -> Vec<PlacedRange> {
                 }
             }
         }
-        Value::List(items) if items.len() == group.count => {
-            for (i, item) in items.iter().enumerate() {
-                let place = s.chosen(&format!("placements[{i}]"), item, Place::ALL);
-                placed.extend(place.map(|place| PlacedRange { group: group.name, range: i..i + 1, place }));
+        Value::List(items) if items.len() == count => {
+            let members = groups.iter().flat_map(|group| (0..group.count).map(move |i| (group, i)));
+            for (at, ((group, i), item)) in members.zip(items).enumerate() {
+                let place = s.chosen(&format!("placements[{at}]"), item, Place::ALL);
+                placed.extend(place.map(|place| placed_range(group, i..i + 1, place)));
             }
         }
         Value::List(items) => {
-            let rest = format!("has {} items, but the task has {} parameters", items.len(), group.count);
+            let rest = format!("has {} items, but the task has {count} parameters", items.len());
             s.wrong("placements", node, &rest, Some(example));
         }
         _ => s.wrong("placements", node, "is neither a table nor a list", Some(example)),
     }
-    placed.sort_by_key(|p| (p.range.start, p.range.end));
+    placed.sort_by_key(|p| (p.first, p.range.start, p.range.end));
     check_disjoint(s, node, &placed);
     placed
 }
 
+fn placed_range(group: &GroupSpec, range: Range<usize>, place: Place) -> PlacedRange {
+    PlacedRange { group: group.name, range, first: group.first, place }
+}
+
 fn check_disjoint(s: &Section<'_>, node: &Node, placed: &[PlacedRange]) {
     for pair in placed.windows(2) {
-        if pair[1].range.start < pair[0].range.end {
+        if pair[1].first == pair[0].first && pair[1].range.start < pair[0].range.end {
             let message = format!(
                 "design.placements places {} twice: by {} and by {}",
                 name_of(&(pair[1].range.start..pair[1].range.start + 1), pair[1].group),
@@ -183,15 +225,18 @@ fn check_disjoint(s: &Section<'_>, node: &Node, placed: &[PlacedRange]) {
 }
 
 /// `stiffness[3]`, `stiffness[2..5]` (2, 3 and 4) or `stiffness` (all).
-fn parse_range(name: &str, group: &GroupSpec) -> Result<Range<usize>, String> {
+fn parse_range<'g>(name: &str, groups: &'g [GroupSpec]) -> Result<(&'g GroupSpec, Range<usize>), String> {
     let shown = shorten(name, 60);
-    let stranger =
-        || format!("`{shown}` names none of the task's parameters, {}", name_of(&(0..group.count), group.name));
-    let rest = name.trim().strip_prefix(group.name).ok_or_else(stranger)?;
-    if rest.is_empty() {
-        return Ok(0..group.count);
-    }
-    let inside = rest.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')).ok_or_else(stranger)?;
+    let stranger = || {
+        let known = groups.iter().map(|group| name_of(&(0..group.count), group.name)).collect::<Vec<_>>().join(", ");
+        format!("`{shown}` names none of the task's parameters, {known}")
+    };
+    let (stem, inside) = match name.trim().split_once('[') {
+        Some((stem, rest)) => (stem, Some(rest.strip_suffix(']').ok_or_else(stranger)?)),
+        None => (name.trim(), None),
+    };
+    let group = groups.iter().find(|group| group.name == stem).ok_or_else(stranger)?;
+    let Some(inside) = inside else { return Ok((group, 0..group.count)) };
     let index = |text: &str| text.trim().parse::<usize>().map_err(|_| stranger());
     let range = match inside.split_once("..") {
         Some((start, end)) => index(start)?..index(end)?,
@@ -203,7 +248,7 @@ fn parse_range(name: &str, group: &GroupSpec) -> Result<Range<usize>, String> {
     if range.end > group.count {
         return Err(format!("`{shown}` goes beyond the last parameter, `{}[{}]`", group.name, group.count - 1));
     }
-    Ok(range)
+    Ok((group, range))
 }
 
 /// A range as it is written in files.
@@ -217,7 +262,7 @@ fn name_of(range: &Range<usize>, group: &str) -> String {
 
 fn write_placements<S: Serializer>(placed: &[PlacedRange], serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(placed.len()))?;
-    for PlacedRange { group, range, place } in placed {
+    for PlacedRange { group, range, place, .. } in placed {
         map.serialize_entry(&name_of(range, group), place)?;
     }
     map.end()
@@ -225,10 +270,15 @@ fn write_placements<S: Serializer>(placed: &[PlacedRange], serializer: S) -> Res
 
 impl Serialize for InitialSpec {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match *self {
+        match self {
             Self::Logit => serializer.serialize_str("logit"),
             Self::Middle => serializer.serialize_str("middle"),
-            Self::Value { value, dimension } => serializer.serialize_str(&with_unit(value, dimension)),
+            Self::Values(values) => match &values[..] {
+                [InitialValue { value, dimension, only: true, .. }] => {
+                    serializer.serialize_str(&with_unit(*value, *dimension))
+                }
+                values => serializer.collect_map(values.iter().map(|v| (v.group, with_unit(v.value, v.dimension)))),
+            },
         }
     }
 }

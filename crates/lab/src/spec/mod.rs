@@ -19,6 +19,7 @@ mod builtin;
 mod controller;
 mod design;
 mod fault;
+mod grasp;
 mod layers;
 mod learner;
 mod names;
@@ -37,8 +38,9 @@ use serde::Serialize;
 
 pub use builtin::{EXPERIMENTS, load};
 pub use controller::{ActivationKind, ControllerSpec, MOST_LAYERS, WIDEST_LAYER};
-pub use design::{DesignSpec, InitialSpec, Place, PlacedRange};
+pub use design::{DesignSpec, InitialSpec, InitialValue, Place, PlacedRange};
 pub use fault::{Excerpt, Fault, SpecErrors};
+pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec};
 pub use layers::{LONGEST_FILE, Layers};
 pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec};
 pub use noise::{EffortSpec, NoiseSpec};

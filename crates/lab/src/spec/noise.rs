@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 
 use super::design::{DesignSpec, Place};
 use super::section::Section;
-use super::task::TaskSpec;
+use super::task::{Problem, TaskSpec};
 use super::tree::Value;
 use super::values::with_unit;
 
@@ -23,7 +23,7 @@ pub struct EffortSpec {
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
 /// | `command` | 0.3 | of the motor command, as a fraction of its range | 1e-6 to 10 |
-/// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s", pendulum: "0.5 N·m") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
+/// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s", pendulum: "0.5 N·m", grasps: "0.02 N·m") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
 /// | `design` | 0.3 | of a parameter in the action, as a fraction of its range | 1e-6 to 10 |
 /// | `command_final`, `effort_final`, `design_final` | "none" | annealed geometrically to this | as above |
 /// | `anneal` | [0.25, 0.75] | begin and end of annealing, fractions of training | 0 to 1, in order |
@@ -61,7 +61,7 @@ impl NoiseSpec {
         let fraction = 1e-6..=10.0;
         let command = s.number("command", 0.3, fraction.clone());
         let command_final = s.optional_number("command_final", fraction.clone());
-        let in_graph = (0..task.group().count).any(|i| design.place_of(i) == Place::Graph);
+        let in_graph = (0..task.groups().iter().map(|g| g.count).sum()).any(|i| design.place_of(i) == Place::Graph);
         let (effort, effort_final) =
             if in_graph { read_effort(&mut s, task) } else { (skim(&mut s, "effort"), skim(&mut s, "effort_final")) };
         let spec = Self {
@@ -83,6 +83,7 @@ impl NoiseSpec {
 fn read_effort(s: &mut Section<'_>, task: &TaskSpec) -> (Option<EffortSpec>, Option<EffortSpec>) {
     let dimension = task.effort_dimension();
     let default = match dimension {
+        _ if matches!(task.problem, Problem::ZGrasp(_) | Problem::SpatialGrasp(_)) => 0.02,
         Dimension::Force => 3.0,
         Dimension::Torque => 0.5,
         _ => 0.1,

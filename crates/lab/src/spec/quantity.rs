@@ -18,6 +18,8 @@ written!(
     kilograms = Mass,
     metres = Length,
     newtons = Force,
+    newton_metres = Torque,
+    radians = Angle,
     newtons_per_metre = Stiffness,
     newton_seconds_per_metre = Damping,
 );

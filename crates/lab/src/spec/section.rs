@@ -119,6 +119,16 @@ impl<'r> Section<'r> {
         self.table?.get(key).map(|entry| &entry.node)
     }
 
+    /// Whether a key has this text; it counts as known then.
+    pub(super) fn is_text(&mut self, key: &'static str, text: &str) -> bool {
+        let is = |entry: &super::tree::Entry| matches!(&entry.node.value, Value::Text(found) if found == text);
+        let found = self.table.and_then(|table| table.get(key)).is_some_and(is);
+        if found {
+            self.known.push(key);
+        }
+        found
+    }
+
     /// The dotted path of a key.
     pub(super) fn path(&self, key: &str) -> String {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }

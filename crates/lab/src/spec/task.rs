@@ -1,8 +1,10 @@
 //! `[task]`: the problem and its physics.
 
 use hwasp_core::Dimension;
+use hwasp_tasks::hand::HandRange;
 use serde::Serialize;
 
+use super::grasp::GraspProblem;
 use super::names::named;
 use super::quantity;
 use super::section::Section;
@@ -24,6 +26,10 @@ named! {
         Reach = "reach",
         /// The gear of a pendulum that has to be swung up, `pendulum`.
         Pendulum = "pendulum",
+        /// An underactuated hand that moves up and down, `z-grasp`.
+        ZGrasp = "z-grasp",
+        /// The same hand, moving in space, `3d-grasp`.
+        SpatialGrasp = "3d-grasp",
     }
 }
 
@@ -51,8 +57,8 @@ named! {
 ///
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
-/// | `problem` | required | `stiffness`, `bar-length`, `reach` or `pendulum` | |
-/// | `horizon` | 1000 (reach: 30, pendulum: 200) | steps of an episode | 1 to 100 000 |
+/// | `problem` | required | `stiffness`, `bar-length`, `reach`, `pendulum`, `z-grasp` or `3d-grasp` | |
+/// | `horizon` | 1000 (reach: 30, pendulum: 200, grasps: 500) | steps of an episode | 1 to 100 000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TaskSpec {
     /// Steps of an evaluation episode, and the most of a training one.
@@ -74,6 +80,11 @@ pub enum Problem {
     Reach(ReachProblem),
     /// The gear is the design; the rest is the classic problem, and there is nothing to set.
     Pendulum,
+    /// The hand's transmission is the design; the palm moves up and down.
+    ZGrasp(GraspProblem),
+    /// The same, and the palm moves in space.
+    #[serde(rename = "3d-grasp")]
+    SpatialGrasp(GraspProblem),
 }
 
 /// What both mass-spring problems have.
@@ -166,11 +177,13 @@ pub struct ReachProblem {
     pub goal: f64,
 }
 
-/// The one group of design parameters that a problem has.
+/// A group of design parameters that a problem has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroupSpec {
-    /// Its name: `stiffness`, `length` or `gear`.
+    /// Its name: `stiffness`, `length`, `gear` or one of the hand's twelve.
     pub name: &'static str,
+    /// The index of its first parameter in the design.
+    pub first: usize,
     /// What it measures.
     pub dimension: Dimension,
     /// How many there are.
@@ -189,6 +202,8 @@ impl TaskSpec {
             Problem::BarLength(_) => ProblemKind::BarLength,
             Problem::Reach(_) => ProblemKind::Reach,
             Problem::Pendulum => ProblemKind::Pendulum,
+            Problem::ZGrasp(_) => ProblemKind::ZGrasp,
+            Problem::SpatialGrasp(_) => ProblemKind::SpatialGrasp,
         }
     }
 
@@ -198,6 +213,7 @@ impl TaskSpec {
             ProblemKind::Reach => 1,
             ProblemKind::Stiffness | ProblemKind::BarLength => 2,
             ProblemKind::Pendulum => 3,
+            ProblemKind::ZGrasp | ProblemKind::SpatialGrasp => 11,
         }
     }
 
@@ -205,33 +221,47 @@ impl TaskSpec {
     pub fn effort_dimension(&self) -> Dimension {
         match &self.problem {
             Problem::Reach(_) => Dimension::Speed,
-            Problem::Pendulum => Dimension::Torque,
+            Problem::Pendulum | Problem::ZGrasp(_) | Problem::SpatialGrasp(_) => Dimension::Torque,
             Problem::BarLength(bar) if bar.interface == InterfaceKind::Rigid => Dimension::Length,
             _ => Dimension::Force,
         }
     }
 
     /// The design parameters, named and limited as the problem's law has them.
-    pub fn group(&self) -> GroupSpec {
+    pub fn groups(&self) -> Vec<GroupSpec> {
+        let one = |name, dimension, count, lo, hi| vec![GroupSpec { name, first: 0, dimension, count, lo, hi }];
         match &self.problem {
             Problem::Stiffness(p) => {
                 let hi = p.stiffness_total_max / p.base.segments as f64;
-                let (name, dimension) = ("stiffness", Dimension::Stiffness);
-                GroupSpec { name, dimension, count: p.base.segments, lo: 0.0, hi }
+                one("stiffness", Dimension::Stiffness, p.base.segments, 0.0, hi)
             }
             Problem::BarLength(p) => {
                 let hi = p.length_total_max / p.base.segments as f64;
-                GroupSpec { name: "length", dimension: Dimension::Length, count: p.base.segments, lo: 0.0, hi }
+                one("length", Dimension::Length, p.base.segments, 0.0, hi)
             }
-            Problem::Reach(_) => GroupSpec { name: "gear", dimension: Dimension::None, count: 1, lo: 0.1, hi: 2.0 },
-            Problem::Pendulum => GroupSpec { name: "gear", dimension: Dimension::None, count: 1, lo: 0.5, hi: 2.0 },
+            Problem::Reach(_) => one("gear", Dimension::None, 1, 0.1, 2.0),
+            Problem::Pendulum => one("gear", Dimension::None, 1, 0.5, 2.0),
+            Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => HandRange::from(p.range)
+                .parameters()
+                .into_iter()
+                .enumerate()
+                .map(|(first, p)| GroupSpec {
+                    name: p.name,
+                    first,
+                    dimension: p.dimension,
+                    count: 1,
+                    lo: p.limits.0,
+                    hi: p.limits.1,
+                })
+                .collect(),
         }
     }
 
     /// Reads the table; what is wrong in it becomes the default. None where the problem itself is not known.
     pub(super) fn read(mut s: Section<'_>) -> Option<Self> {
         if s.origin("problem").is_none() {
-            let hint = "set `problem` in [task] to \"stiffness\", \"bar-length\", \"reach\" or \"pendulum\"";
+            let hint = "set `problem` in [task] to \"stiffness\", \"bar-length\", \"reach\", \"pendulum\", \"z-grasp\" or \
+                        \"3d-grasp\"";
             s.clash("problem", "task.problem is missing".into(), hint);
         }
         let kind = s.choice("problem", ProblemKind::ALL)?;
@@ -239,6 +269,7 @@ impl TaskSpec {
             ProblemKind::Stiffness | ProblemKind::BarLength => 1000,
             ProblemKind::Reach => 30,
             ProblemKind::Pendulum => 200,
+            ProblemKind::ZGrasp | ProblemKind::SpatialGrasp => 500,
         };
         let horizon = s.count("horizon", usual, 1..=MOST_STEPS);
         refuse_foreign(&mut s, kind);
@@ -253,6 +284,8 @@ impl TaskSpec {
                 Problem::Reach(ReachProblem { goal: s.quantity("goal", Dimension::Length, 0.25, &(-1.0..=1.0)) })
             }
             ProblemKind::Pendulum => Problem::Pendulum,
+            ProblemKind::ZGrasp => Problem::ZGrasp(GraspProblem::read(&mut s, false)),
+            ProblemKind::SpatialGrasp => Problem::SpatialGrasp(GraspProblem::read(&mut s, true)),
         };
         s.finish();
         Some(Self { horizon, problem })
@@ -300,11 +333,24 @@ fn refuse_foreign(s: &mut Section<'_>, kind: ProblemKind) {
     const BAR: &[&str] = &["interface", "length_total_max", "spring", "interface_stiffness", "interface_damping"];
     const BOTH: &[&str] = &["segments", "reward", "effort_clip", "mass_1", "mass_2", "motor_limit"];
     const GOAL: &[&str] = &["goal"];
+    const GRASP: &[&str] = GraspProblem::KEYS;
     let foreign: &[(&[&'static str], &str)] = match kind {
-        ProblemKind::Stiffness => &[(BAR, "bar-length")],
-        ProblemKind::BarLength => &[(SPRINGS, "stiffness")],
-        ProblemKind::Reach => &[(SPRINGS, "stiffness"), (BAR, "bar-length"), (BOTH, "stiffness or bar-length")],
+        ProblemKind::Stiffness => &[(BAR, "bar-length"), (GRASP, "z-grasp or 3d-grasp")],
+        ProblemKind::BarLength => &[(SPRINGS, "stiffness"), (GRASP, "z-grasp or 3d-grasp")],
+        ProblemKind::Reach => &[
+            (SPRINGS, "stiffness"),
+            (BAR, "bar-length"),
+            (BOTH, "stiffness or bar-length"),
+            (GRASP, "z-grasp or 3d-grasp"),
+        ],
         ProblemKind::Pendulum => &[
+            (SPRINGS, "stiffness"),
+            (BAR, "bar-length"),
+            (BOTH, "stiffness or bar-length"),
+            (GOAL, "stiffness, bar-length or reach"),
+            (GRASP, "z-grasp or 3d-grasp"),
+        ],
+        ProblemKind::ZGrasp | ProblemKind::SpatialGrasp => &[
             (SPRINGS, "stiffness"),
             (BAR, "bar-length"),
             (BOTH, "stiffness or bar-length"),

@@ -2,10 +2,8 @@
 
 use hwasp_core::{DesignError, DesignGroup, DesignSpace, Dimension, Initial};
 
-use super::names::KINDS;
-
 /// Parameters of a design: pulley radius (m), spring stiffness (N·m/rad) and spring preload (rad), four of each in the order
-/// of [`KINDS`].
+/// of [`KINDS`](super::names::KINDS).
 pub const DESIGN_LEN: usize = 12;
 
 /// What the paper's HWasP found (table 2).
@@ -28,9 +26,35 @@ const LARGE: [(f64, f64); 3] = [(0.002, 0.012), (0.002, 0.012), (0.0, 4.0)];
 /// How much narrower than the large range the small one is (paper, section 6).
 const NARROWER: f64 = 8.0;
 
-/// What the three groups of four measure, and what they are called.
-const QUANTITIES: [(&str, Dimension); 3] =
-    [("radius", Dimension::Length), ("stiffness", Dimension::TorsionalStiffness), ("preload", Dimension::Angle)];
+/// What the three groups of four measure.
+const QUANTITIES: [Dimension; 3] = [Dimension::Length, Dimension::TorsionalStiffness, Dimension::Angle];
+
+/// The names of the twelve, in their order.
+const NAMES: [&str; DESIGN_LEN] = [
+    "thumb_proximal_radius",
+    "thumb_distal_radius",
+    "finger_proximal_radius",
+    "finger_distal_radius",
+    "thumb_proximal_stiffness",
+    "thumb_distal_stiffness",
+    "finger_proximal_stiffness",
+    "finger_distal_stiffness",
+    "thumb_proximal_preload",
+    "thumb_distal_preload",
+    "finger_proximal_preload",
+    "finger_distal_preload",
+];
+
+/// One of the twelve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandParameter {
+    /// Joint and quantity.
+    pub name: &'static str,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// Its lower and upper limit, SI.
+    pub limits: (f64, f64),
+}
 
 /// Where the design is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,6 +82,12 @@ impl HandRange {
         }
     }
 
+    /// Every parameter's name, limits and what it measures.
+    pub fn parameters(&self) -> [HandParameter; DESIGN_LEN] {
+        let bounds = self.bounds();
+        std::array::from_fn(|i| HandParameter { name: NAMES[i], dimension: QUANTITIES[i / 4], limits: bounds[i] })
+    }
+
     /// The middle of every parameter's limits, SI.
     pub fn middle(&self) -> [f64; DESIGN_LEN] {
         self.bounds().map(|(lo, hi)| 0.5 * (lo + hi))
@@ -66,9 +96,9 @@ impl HandRange {
     /// The design space: twelve groups of one parameter, `thumb_proximal_radius` to `finger_distal_preload`, as each joint
     /// has limits of its own and is best spoken of by its name.
     pub(super) fn space(&self, initial: &[Initial; DESIGN_LEN]) -> Result<DesignSpace, DesignError> {
-        let groups = self.bounds().into_iter().zip(initial).enumerate().map(|(i, ((lo, hi), &initial))| {
-            let (quantity, dimension) = QUANTITIES[i / 4];
-            DesignGroup { name: format!("{}_{quantity}", KINDS[i % 4]), dimension, lo, hi, count: 1, initial }
+        let groups = self.parameters().into_iter().zip(initial).map(|(parameter, &initial)| {
+            let HandParameter { name, dimension, limits: (lo, hi) } = parameter;
+            DesignGroup { name: name.to_owned(), dimension, lo, hi, count: 1, initial }
         });
         DesignSpace::new(groups.collect())
     }

@@ -1,0 +1,158 @@
+//! A problem's settings as its plant and law take them.
+
+use std::sync::Arc;
+
+use hwasp_core::Initial;
+use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
+use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
+use hwasp_tasks::reach::{Reach, ReachSettings};
+
+use super::{AssembleError, Problems, World};
+#[cfg(feature = "mujoco")]
+use crate::spec::ObjectKind;
+use crate::spec::{GraspProblem, GroupSpec, InitialSpec, InterfaceKind, MassSpringSpec, Problem, RewardKind, Spec};
+
+pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
+    let starts = initial(spec);
+    // Problems with one group of parameters.
+    let initial = starts[0];
+    match &spec.task.problem {
+        Problem::Stiffness(p) => {
+            let settings = MassSpringSettings {
+                max_total_stiffness: p.stiffness_total_max,
+                bar_length: p.bar,
+                ..mass_spring(&p.base, spec.task.horizon, initial)
+            };
+            let deployment = MassSpring::stiffness(MassSpringSettings { effort_limit: None, ..settings.clone() })?;
+            Ok(mass_spring_problem(&MassSpring::stiffness(settings)?, &deployment))
+        }
+        Problem::BarLength(p) => {
+            let settings = MassSpringSettings {
+                max_total_length: p.length_total_max,
+                spring_stiffness: p.spring,
+                interface_stiffness: p.interface_stiffness,
+                interface_damping: p.interface_damping,
+                ..mass_spring(&p.base, spec.task.horizon, initial)
+            };
+            let interface = match p.interface {
+                InterfaceKind::Soft => Interface::Soft,
+                InterfaceKind::Rigid => Interface::Rigid,
+            };
+            // The bar that is built is rigid and nothing clips its forces.
+            let deployment = MassSpringSettings { effort_limit: None, ..settings.clone() };
+            let deployment = MassSpring::bar(deployment, Interface::Rigid)?;
+            Ok(mass_spring_problem(&MassSpring::bar(settings, interface)?, &deployment))
+        }
+        Problem::Reach(p) => {
+            let settings =
+                ReachSettings { goal: p.goal, horizon: spec.task.horizon, initial, ..ReachSettings::default() };
+            let reach = Reach::new(settings)?;
+            let world = World { law: reach.law(), make: Arc::new(reach.clone()) };
+            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![Some(reach.optimum())] })
+        }
+        Problem::Pendulum => {
+            let pendulum = Pendulum::new(&PendulumSettings { horizon: spec.task.horizon, initial })?;
+            let world = World { law: pendulum.law(), make: Arc::new(pendulum) };
+            Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
+        }
+        Problem::ZGrasp(p) => grasp(p, false, spec, &starts),
+        Problem::SpatialGrasp(p) => grasp(p, true, spec, &starts),
+    }
+}
+
+#[cfg(not(feature = "mujoco"))]
+fn grasp(_: &GraspProblem, _: bool, spec: &Spec, _: &[Initial]) -> Result<Problems, AssembleError> {
+    Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
+}
+
+#[cfg(feature = "mujoco")]
+fn grasp(p: &GraspProblem, spatial: bool, spec: &Spec, starts: &[Initial]) -> Result<Problems, AssembleError> {
+    let grasp = hwasp_mujoco::grasp::Grasp::new(grasp_settings(p, spatial, spec, starts))?;
+    let optimum = vec![None; starts.len()];
+    let world = World { law: grasp.law(), make: grasp.shared() };
+    Ok(Problems { training: world.clone(), deployment: world, optimum })
+}
+
+#[cfg(feature = "mujoco")]
+fn grasp_settings(
+    p: &GraspProblem,
+    spatial: bool,
+    spec: &Spec,
+    starts: &[Initial],
+) -> hwasp_mujoco::grasp::GraspSettings {
+    use hwasp_mujoco::grasp::{GraspSettings, Inertia, ShapeKind};
+    use hwasp_tasks::hand::{HandDescription, PalmMotion};
+
+    let mut hand = HandDescription::default();
+    hand.transmission.tension_limit = p.tension_limit;
+    GraspSettings {
+        palm: if spatial { PalmMotion::Spatial } else { PalmMotion::Vertical },
+        hand,
+        range: p.range.into(),
+        initial: std::array::from_fn(|i| starts[i]),
+        shapes: p
+            .shapes
+            .iter()
+            .map(|shape| match shape {
+                ObjectKind::Sphere => ShapeKind::Sphere,
+                ObjectKind::Box => ShapeKind::Box,
+                ObjectKind::Cylinder => ShapeKind::Cylinder,
+                ObjectKind::Ellipsoid => ShapeKind::Ellipsoid,
+            })
+            .collect(),
+        size: p.size.ends(),
+        mass: p.mass.ends(),
+        friction: p.friction.ends(),
+        inertia: p.inertia.map_or(Inertia::Physical, |span| Inertia::Independent(span.ends())),
+        height: p.height.ends(),
+        offset: p.offset,
+        yaw: p.yaw,
+        lying: p.lying,
+        sensor_noise: [p.position_noise, p.travel_noise],
+        actuation_noise: [p.position_noise, p.travel_noise],
+        disturbance: [p.disturbance_force, p.disturbance_torque],
+        horizon: spec.task.horizon,
+        ..GraspSettings::default()
+    }
+}
+
+fn mass_spring_problem(training: &MassSpring, deployment: &MassSpring) -> Problems {
+    let world = |m: &MassSpring| World { law: m.law(), make: Arc::new(m.clone()) };
+    Problems { training: world(training), deployment: world(deployment), optimum: vec![Some(deployment.optimum())] }
+}
+
+fn mass_spring(base: &MassSpringSpec, horizon: usize, initial: Initial) -> MassSpringSettings {
+    let paper = MassSpringSettings::default();
+    // The experiment names the force; the motor's constants stay and its current gives it.
+    let max_current = base.motor_limit * paper.shaft_radius / paper.torque_constant;
+    let settings = MassSpringSettings {
+        count: base.segments,
+        upper_mass: base.mass_1,
+        lower_mass: base.mass_2,
+        goal: base.goal,
+        max_current,
+        effort_limit: base.effort_clip,
+        horizon,
+        initial,
+        ..paper
+    };
+    match base.reward {
+        RewardKind::Soft => settings,
+        RewardKind::Hard => settings.with_hard_reward(),
+    }
+}
+
+/// Where the parameters of each group begin.
+pub(super) fn initial(spec: &Spec) -> Vec<Initial> {
+    let start = |group: GroupSpec| {
+        let middle = Initial::Value(0.5 * (group.lo + group.hi));
+        match &spec.design.initial {
+            InitialSpec::Logit => Initial::Logit { half_width: spec.design.logit_half_width },
+            InitialSpec::Middle => middle,
+            InitialSpec::Values(values) => {
+                values.iter().find(|v| v.group == group.name).map_or(middle, |v| Initial::Value(v.value))
+            }
+        }
+    };
+    spec.task.groups().into_iter().map(start).collect()
+}

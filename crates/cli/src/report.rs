@@ -63,7 +63,9 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
 }
 
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
-    format!("{value:.4} {unit}").trim_end().to_owned()
+    // Four decimals, and as many more as small quantities need for three figures.
+    let decimals = if value == 0.0 { 4 } else { (2 - value.abs().log10().floor() as i32).clamp(4, 9) as usize };
+    format!("{value:.decimals$} {unit}").trim_end().to_owned()
 }
 
 /// An evaluation.
@@ -77,6 +79,21 @@ pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
     );
     text.push_str(&line("discounted return", &evaluation.discounted_return));
     text.push_str(&line("return", &evaluation.undiscounted_return));
+    for rate in &evaluation.success {
+        let name = if rate.kind == "all" { "success".to_owned() } else { format!("  {}", rate.kind) };
+        let _ = writeln!(
+            text,
+            "  {name:<20} {:>9.1}%   {} of {}, 95 % interval [{:.1}, {:.1}]",
+            100.0 * rate.rate(),
+            rate.successes,
+            rate.episodes,
+            100.0 * rate.low,
+            100.0 * rate.high
+        );
+    }
+    if evaluation.discarded_episodes > 0 {
+        let _ = writeln!(text, "  {} episodes discarded: their physics failed", evaluation.discarded_episodes);
+    }
     text
 }
 

@@ -22,6 +22,7 @@ pub const EXPERIMENTS: &[(&str, &str)] = embedded![
     "bar-length-50",
     "reach",
     "pendulum",
+    "z-grasp",
     "paper/mass-spring",
     "paper/mass-spring-50",
     "paper/bar-length",

@@ -102,7 +102,7 @@ fn an_interrupted_training_keeps_what_it_has() {
     // Two iterations have to be there; a child that cannot begin would never write them.
     let rows = || fs::read_to_string(sandbox.path("run/metrics.csv")).map_or(0, |text| text.lines().count());
     let began = Instant::now();
-    while rows() < 3 && began.elapsed() < Duration::from_secs(60) {
+    while rows() < 3 && began.elapsed() < Duration::from_mins(1) {
         std::thread::sleep(Duration::from_millis(5));
     }
     let pid = child.id().to_string();

@@ -152,6 +152,13 @@ pub(crate) struct EvalArgs {
     /// Threads for episodes; they do not change the result
     #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: NonZeroUsize,
+    /// Evaluate under another value of the experiment, such as `task.disturbance_force="0.2 N"`; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// On the hand with the engine's own tendons and springs, at 1 kHz, instead of the law: as near to the built hand as
+    /// simulation goes
+    #[arg(long)]
+    pub(crate) native_tendons: bool,
     /// Print JSON, for scripts
     #[arg(long)]
     pub(crate) json: bool,

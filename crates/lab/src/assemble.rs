@@ -45,6 +45,12 @@ pub enum AssembleError {
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
+    /// A problem whose mechanism the engine cannot express by itself.
+    #[error("{problem} has no mechanism of the engine's own; z-grasp and 3d-grasp have")]
+    NoNative {
+        /// The problem.
+        problem: &'static str,
+    },
     /// A search whose budget does not hold one generation.
     #[error(
         "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \

@@ -118,6 +118,18 @@ pub fn evaluate(
     evaluate_in(assembly, &assembly.problem.deployment, &built, params, (episodes, seed), executor)
 }
 
+/// Evaluates the controller in `params` on the design in them in the world that stands in for the built robot: the hand with
+/// the engine's own tendons ([`Assembly::native`]).
+pub fn evaluate_native(
+    assembly: &Assembly,
+    params: &[f32],
+    asked: (u64, u64),
+    executor: &dyn Executor,
+) -> Result<Evaluation, EvaluateError> {
+    let design = assembly.policy.design(params);
+    evaluate_in(assembly, &assembly.native(&design)?, &design, params, asked, executor)
+}
+
 /// Evaluates the controller in `params` on a given design in a given world of the same problem.
 pub fn evaluate_in(
     assembly: &Assembly,

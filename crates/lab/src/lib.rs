@@ -23,7 +23,7 @@ mod train;
 
 pub use assemble::{AssembleError, Assembly, Problems, World};
 pub use drawing::Drawing;
-pub use evaluate::{EvaluateError, Evaluation, MeanInterval, evaluate, evaluate_in};
+pub use evaluate::{EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native};
 pub use observer::{Event, Observer, ObserverError};
 pub use policy_file::{PolicyFileError, read_policy, write_policy};
 pub use run_folder::{Provenance, RunError, RunFolder, SavedRun};

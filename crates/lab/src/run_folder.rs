@@ -267,13 +267,20 @@ pub struct SavedRun {
 impl SavedRun {
     /// Opens a run folder and puts its experiment together again.
     pub fn open(path: &Path) -> Result<Self, RunError> {
+        Self::open_with(path, &[])
+    }
+
+    /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
+    pub fn open_with(path: &Path, assignments: &[String]) -> Result<Self, RunError> {
         let file = path.join(EXPERIMENT);
         if !file.is_file() {
             return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
         }
         let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
         let text = String::from_utf8_lossy(&text);
-        let spec = spec::resolve(Layers::from_text(&file.to_string_lossy(), &text)?, None)?;
+        let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
+        let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
+        let spec = spec::resolve(layers, None)?;
         Ok(Self { path: path.to_owned(), assembly: Assembly::new(&spec)? })
     }
 

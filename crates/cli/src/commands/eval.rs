@@ -1,6 +1,6 @@
 //! `hwasp eval`.
 
-use hwasp_lab::evaluate;
+use hwasp_lab::{evaluate, evaluate_native};
 
 use super::{executor, saved_run};
 use crate::args::EvalArgs;
@@ -8,13 +8,18 @@ use crate::failure::Failure;
 use crate::{output, report};
 
 pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
-    let saved = saved_run(&args.run)?;
+    let saved = saved_run(&args.run, &args.set)?;
     let params = saved.params().map_err(Failure::input)?;
     let settings = &saved.assembly().spec().train;
     let episodes = args.episodes.unwrap_or(settings.evaluation_episodes as u64);
     let seed = args.seed.unwrap_or(settings.evaluation_seed);
     let executor = executor(args.threads)?;
-    let evaluation = evaluate(saved.assembly(), &params, (episodes, seed), &*executor)?;
+    let asked = (episodes, seed);
+    let evaluation = if args.native_tendons {
+        evaluate_native(saved.assembly(), &params, asked, &*executor)?
+    } else {
+        evaluate(saved.assembly(), &params, asked, &*executor)?
+    };
     let text = if args.json {
         format!("{}\n", serde_json::to_string_pretty(&evaluation)?)
     } else {

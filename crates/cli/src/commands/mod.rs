@@ -48,9 +48,9 @@ fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec
 }
 
 /// The run that was written to a folder.
-fn saved_run(path: &Path) -> Result<SavedRun, Failure> {
+fn saved_run(path: &Path, set: &[String]) -> Result<SavedRun, Failure> {
     if path.is_dir() {
-        return SavedRun::open(path).map_err(Failure::input);
+        return SavedRun::open_with(path, set).map_err(Failure::input);
     }
     let what = if path.exists() { "is not a folder" } else { "does not exist" };
     let hint = "name a run folder; `hwasp train` says where it writes one, under runs/ unless --out names another";

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output;
 
 pub(crate) fn run(args: &PlotArgs) -> Result<(), Failure> {
-    let runs = args.runs.iter().map(|path| saved_run(path)).collect::<Result<Vec<_>, _>>()?;
+    let runs = args.runs.iter().map(|path| saved_run(path, &[])).collect::<Result<Vec<_>, _>>()?;
     let x_axis = args.axis.axis();
     let all = runs.iter().map(|run| run.curve(x_axis)).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let mut options = PlotOptions { x_axis, ..runs[0].plot_options(args.title.clone()) };

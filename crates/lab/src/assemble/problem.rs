@@ -7,7 +7,7 @@ use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
 
-use super::{AssembleError, Problems, World};
+use super::{AssembleError, Assembly, Problems, World};
 #[cfg(feature = "mujoco")]
 use crate::spec::ObjectKind;
 use crate::spec::{GraspProblem, GroupSpec, InitialSpec, InterfaceKind, MassSpringSpec, Problem, RewardKind, Spec};
@@ -71,6 +71,32 @@ fn grasp(p: &GraspProblem, spatial: bool, spec: &Spec, starts: &[Initial]) -> Re
     let optimum = vec![None; starts.len()];
     let world = World { law: grasp.law(), make: grasp.shared() };
     Ok(Problems { training: world.clone(), deployment: world, optimum })
+}
+
+impl Assembly {
+    /// The world in which the hand of this `design` (SI) moves by the engine's own tendons and springs, at the rate of the
+    /// simulation, and the law has no say.
+    pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
+        let spec = self.spec();
+        let problem = spec.task.kind().name();
+        let (Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings)) = &spec.task.problem else {
+            return Err(AssembleError::NoNative { problem });
+        };
+        let spatial = matches!(spec.task.problem, Problem::SpatialGrasp(_));
+        native(settings, spatial, spec, design)
+    }
+}
+
+#[cfg(not(feature = "mujoco"))]
+fn native(_: &GraspProblem, _: bool, spec: &Spec, _: &[f64]) -> Result<World, AssembleError> {
+    Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
+}
+
+#[cfg(feature = "mujoco")]
+fn native(p: &GraspProblem, spatial: bool, spec: &Spec, design: &[f64]) -> Result<World, AssembleError> {
+    let settings = grasp_settings(p, spatial, spec, &initial(spec));
+    let grasp = hwasp_mujoco::grasp::Grasp::native(settings, &std::array::from_fn(|i| design[i]))?;
+    Ok(World { law: grasp.law(), make: grasp.shared() })
 }
 
 #[cfg(feature = "mujoco")]

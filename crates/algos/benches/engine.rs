@@ -4,18 +4,21 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use hwasp_algos::{BaselineConfig, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
+use hwasp_algos::{
+    BaselineConfig, FisherRows, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Trpo, TrpoConfig,
+    TrpoSettings,
+};
 use hwasp_core::{
     Batch, EpisodeKind, Episodes, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec, Sampler, Serial,
 };
 use hwasp_diff::{Activation, Mlp};
 use hwasp_tasks::mass_spring::{MassSpring, MassSpringSettings};
 
-fn springs() -> (MassSpring, Arc<HardwarePolicy>) {
+fn springs(hidden: Vec<usize>) -> (MassSpring, Arc<HardwarePolicy>) {
     let problem = MassSpring::stiffness(MassSpringSettings::default()).expect("the paper's settings are sound");
     let law = problem.law();
     let spec = PolicySpec {
-        hidden: vec![32, 32],
+        hidden,
         activation: Activation::Tanh,
         squash: true,
         observation_center: vec![0.1, 0.0],
@@ -93,7 +96,7 @@ fn dense(c: &mut Criterion) {
 /// One gradient step on 128 rows of a 2-32-32-1 controller with a ten-spring law: surrogate, gradient, Adam. A hundred
 /// steps on one batch are timed, the advantages and the baseline's fit among them; read the time per element.
 fn ppo_step(c: &mut Criterion) {
-    let (problem, policy) = springs();
+    let (problem, policy) = springs(vec![32, 32]);
     let batch = batch(&problem, &policy, 1, 128);
     let steps = 100;
     let settings = PpoSettings {
@@ -112,7 +115,7 @@ fn ppo_step(c: &mut Criterion) {
 }
 
 fn iteration(c: &mut Criterion) {
-    let (problem, policy) = springs();
+    let (problem, policy) = springs(vec![32, 32]);
     let full = batch(&problem, &policy, 20, 200);
     let settings =
         PpoSettings { ppo: PpoConfig::default(), baseline: BaselineConfig::Mlp(MlpBaselineConfig::default()) };
@@ -126,5 +129,25 @@ fn iteration(c: &mut Criterion) {
     group.bench_function("fit of the value network", |b| b.iter(|| value.fit(&full, &targets, 0.0, 0)));
 }
 
-criterion_group!(benches, inference, dense, ppo_step, iteration);
+/// One update on 20,000 rows of a 2-128-128-1 controller with a ten-spring law, a linear baseline's fit among it: by the
+/// rows that the curvature is taken of, ten products each.
+fn trpo_update(c: &mut Criterion) {
+    let (problem, policy) = springs(vec![128, 128]);
+    let full = batch(&problem, &policy, 100, 200);
+    let mut group = c.benchmark_group("TRPO update of 20 000 rows");
+    group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(10);
+    for rows in [2000, 20_000] {
+        let trpo = TrpoConfig { fisher_rows: FisherRows::Count(rows), cg_tolerance: 0.0, ..TrpoConfig::default() };
+        let settings = TrpoSettings { trpo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } };
+        group.bench_function(format!("curvature of {rows}"), |b| {
+            b.iter_batched_ref(
+                || Trpo::new(&settings, Arc::clone(&policy), policy.init(1, 1.0), 1),
+                |trpo| trpo.update(&full, 0.0, 0).expect("finite"),
+                BatchSize::SmallInput,
+            );
+        });
+    }
+}
+
+criterion_group!(benches, inference, dense, ppo_step, iteration, trpo_update);
 criterion_main!(benches);

@@ -41,6 +41,11 @@ impl Adam {
         Self { config, first: vec![0.0; count], second: vec![0.0; count], steps: 0 }
     }
 
+    /// The number of parameters, or 0 where the two moments do not agree on one.
+    pub(crate) fn len(&self) -> usize {
+        if self.first.len() == self.second.len() { self.first.len() } else { 0 }
+    }
+
     /// One descent step; `learning_rate` is per parameter.
     pub fn step(&mut self, params: &mut [f32], gradient: &[f32], learning_rate: &[f32]) {
         self.steps += 1;

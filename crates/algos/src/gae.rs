@@ -1,6 +1,33 @@
 //! Generalised advantage estimation (Schulman et al. 2016, eq. 16).
 
 use hwasp_core::{Batch, End};
+use serde::{Deserialize, Serialize};
+
+/// How rewards and values become advantages.
+///
+/// | name | default | purpose |
+/// |---|---|---|
+/// | `discount` | 0.99 | γ |
+/// | `gae_lambda` | 0.95 | λ |
+/// | `normalize` | true | mean 0, variance 1 over the batch |
+/// | `bootstrap_truncated` | true | value the state after a truncated episode; the paper's toolkit does not |
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AdvantageConfig {
+    /// γ, of returns and advantages.
+    pub discount: f64,
+    /// λ of the advantages.
+    pub gae_lambda: f64,
+    /// Whether advantages are centred and scaled over the batch.
+    pub normalize: bool,
+    /// Whether the state after a truncated episode is valued.
+    pub bootstrap_truncated: bool,
+}
+
+impl Default for AdvantageConfig {
+    fn default() -> Self {
+        Self { discount: 0.99, gae_lambda: 0.95, normalize: true, bootstrap_truncated: true }
+    }
+}
 
 /// What [`advantages`] gives, one value per row.
 #[derive(Clone, Debug, PartialEq)]

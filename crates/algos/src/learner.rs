@@ -1,13 +1,13 @@
 //! What a training loop knows of a learner.
 
-use hwasp_core::Batch;
+use hwasp_core::{Batch, Executor};
 use thiserror::Error;
 
 /// What an update did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateMetrics {
-    /// KL divergence from the policy that acted, nats: the mean over the rows of the last epoch, each taken before its
-    /// gradient step.
+    /// KL divergence from the policy that acted, nats. PPO: an estimate, the mean over the rows of the last epoch, each
+    /// taken before its gradient step. TRPO: exact, over all rows, after the update.
     pub kl: f64,
     /// Entropy of the action distribution after the update, nats.
     pub entropy: f64,
@@ -17,6 +17,23 @@ pub struct UpdateMetrics {
     pub grad_norm: f64,
     /// Epochs done; fewer than asked for where the KL limit stopped them.
     pub epochs: usize,
+    /// What TRPO did; none of other learners.
+    pub trust_region: Option<TrustRegionMetrics>,
+}
+
+/// How a step within a trust region came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TrustRegionMetrics {
+    /// The share of the full step that was taken; 0 where none was.
+    pub step_fraction: f64,
+    /// What the step gained in the surrogate objective, mean of ρ·A.
+    pub gain: f64,
+    /// Iterations of conjugate gradients.
+    pub cg_iterations: usize,
+    /// Steps that the line search tried.
+    pub tried: usize,
+    /// Updates so far that took no step.
+    pub rejected: u64,
 }
 
 /// Why an update was not applied.
@@ -30,6 +47,27 @@ pub enum LearnError {
         /// The iteration.
         iteration: u64,
     },
+    /// A saved state of another policy or baseline.
+    #[error(
+        "the saved state has {found} {what}, but {wanted} are needed; resume with the settings that it was saved under"
+    )]
+    State {
+        /// What there are too many or too few of.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        wanted: usize,
+    },
+    /// A saved state of another kind of baseline.
+    #[error("the saved state is of another kind of baseline; resume with the settings that it was saved under")]
+    Baseline,
+}
+
+impl LearnError {
+    pub(crate) fn check_length(what: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
+        if found == wanted { Ok(()) } else { Err(Self::State { what, found, wanted }) }
+    }
 }
 
 /// Turns batches into better parameters.
@@ -40,4 +78,17 @@ pub trait Learner {
     /// Learns from a batch that the present parameters gave. `progress` in [0, 1] drives schedules; `iteration` names the
     /// random stream. After an error the parameters are those from before the update.
     fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError>;
+
+    /// The same with an executor for passes over blocks of rows, whose number of threads changes no bit. A learner that
+    /// has no use for one does without.
+    fn update_on(
+        &mut self,
+        executor: &dyn Executor,
+        batch: &Batch,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
+        let _ = executor;
+        self.update(batch, progress, iteration)
+    }
 }

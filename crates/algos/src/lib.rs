@@ -1,4 +1,4 @@
-//! Learners: generalised advantages, value baselines, PPO. Searches without gradients: CMA-ES, random search. They see
+//! Learners: generalised advantages, value baselines, PPO, TRPO. Searches without gradients: CMA-ES, random search. They see
 //! policies, batches and scores, never an environment.
 
 #![forbid(unsafe_code)]
@@ -10,12 +10,17 @@ mod learner;
 mod minibatch;
 mod ppo;
 mod search;
+mod surrogate;
+mod trpo;
 
 pub use adam::{Adam, AdamConfig};
-pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig};
-pub use gae::{Advantages, advantages, normalize};
-pub use learner::{LearnError, Learner, UpdateMetrics};
+pub use baseline::{
+    Baseline, BaselineConfig, BaselineState, LinearBaseline, MlpBaseline, MlpBaselineConfig, MlpBaselineState,
+};
+pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
+pub use learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
 pub use search::{
     Ars, ArsConfig, ArsState, Cmaes, CmaesConfig, CmaesState, Scored, Search, SearchError, StateFilter, Stop,
 };
+pub use trpo::{FisherRows, Solution, Trpo, TrpoConfig, TrpoSettings, TrpoState, conjugate_gradient};

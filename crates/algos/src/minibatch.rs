@@ -7,7 +7,7 @@ use hwasp_core::{Batch, Rows};
 /// Rows of a block that is worked on at once: its activations stay in the first-level cache.
 pub(crate) const BLOCK: usize = 64;
 
-/// What PPO needs of some rows of a batch: observations by row, all else by column.
+/// What learners need of some rows of a batch: observations by row, all else by column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Minibatch {
     pub(crate) count: usize,

@@ -1,18 +1,17 @@
 //! Proximal policy optimisation (Schulman et al. 2017).
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
-use hwasp_diff::fast::{exp, vectorised};
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use crate::adam::{Adam, AdamConfig, clip_norm};
 use crate::baseline::{Baseline, BaselineConfig};
-use crate::gae::{advantages, normalize};
+use crate::gae::AdvantageConfig;
 use crate::learner::{LearnError, Learner, UpdateMetrics};
 use crate::minibatch::{BLOCK, Minibatch};
+use crate::surrogate::Surrogate;
 
 /// Settings of [`Ppo`].
 ///
@@ -84,6 +83,18 @@ impl Default for PpoConfig {
             target_kl: None,
             normalize_advantages: true,
             bootstrap_truncated: true,
+        }
+    }
+}
+
+impl PpoConfig {
+    /// What of it concerns advantages.
+    fn advantages(&self) -> AdvantageConfig {
+        AdvantageConfig {
+            discount: self.discount,
+            gae_lambda: self.gae_lambda,
+            normalize: self.normalize_advantages,
+            bootstrap_truncated: self.bootstrap_truncated,
         }
     }
 }
@@ -224,15 +235,7 @@ impl<P: Policy> Learner for Ppo<P> {
     }
 
     fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
-        let (values, last_values) = self.baseline.predict(batch);
-        let discounting = (self.config.discount, self.config.gae_lambda);
-        let mut targets = advantages(batch, &values, &last_values, discounting, self.config.bootstrap_truncated);
-        if !targets.advantage.iter().all(|a| a.is_finite()) {
-            return Err(LearnError::NotFinite { what: "an advantage", iteration });
-        }
-        if self.config.normalize_advantages {
-            normalize(&mut targets.advantage);
-        }
+        let targets = self.baseline.targets(batch, &self.config.advantages(), iteration)?;
         let before = (self.params.clone(), self.adam.clone());
         let result = self.optimise(batch, &targets.advantage, progress, iteration).and_then(|metrics| {
             let sound = self.params.iter().all(|p| p.is_finite());
@@ -278,73 +281,6 @@ impl<P: Policy> GradientStep<P> {
             }
         }
         totals
-    }
-}
-
-/// The clipped surrogate of one block of rows.
-struct Surrogate<'a> {
-    minibatch: &'a Minibatch,
-    block: Range<usize>,
-    /// Means `[A × BLOCK]`.
-    mean: &'a [f32],
-    log_std: &'a [f32],
-    clip_ratio: f32,
-}
-
-impl Surrogate<'_> {
-    /// Writes the cotangents of the means `[A × BLOCK]` and adds those of the log standard deviations. Returns the sums of
-    /// the KL estimate (ρ - 1) - log ρ and of the clipped rows.
-    fn differentiate(&self, cotangent: &mut [f32], log_std_gradient: &mut [f32]) -> (f64, f64) {
-        vectorised(
-            #[inline(always)]
-            || self.differentiate_inlined(cotangent, log_std_gradient),
-        )
-    }
-
-    #[inline(always)]
-    fn differentiate_inlined(&self, cotangent: &mut [f32], log_std_gradient: &mut [f32]) -> (f64, f64) {
-        let count = self.block.len();
-        let old = &self.minibatch.log_prob[self.block.clone()];
-        let advantage = &self.minibatch.advantage[self.block.clone()];
-        let weight = -1.0 / self.minibatch.count as f32;
-        let mut log_prob = [0.0_f32; BLOCK];
-        log_prob.fill(-gaussian::log_norm(self.log_std) as f32);
-        let columns = || self.mean.chunks_exact(BLOCK).zip(self.log_std).enumerate();
-        for (j, (mean, &log_std)) in columns() {
-            let inverse = (-log_std).exp();
-            let action = self.minibatch.action(j, &self.block);
-            for ((p, a), m) in log_prob[..count].iter_mut().zip(action).zip(mean) {
-                let z = (a - m) * inverse;
-                *p = (-0.5 * z).mul_add(z, *p);
-            }
-        }
-        // d loss / d log-probability of each row; zero where the clip has taken over.
-        let mut pull = [0.0_f32; BLOCK];
-        let mut kl = [0.0_f32; BLOCK];
-        let mut clipped = [0.0_f32; BLOCK];
-        let (lo, hi) = (1.0 - self.clip_ratio, 1.0 + self.clip_ratio);
-        for r in 0..count {
-            let log_ratio = log_prob[r] - old[r];
-            let ratio = exp(log_ratio);
-            let a = advantage[r];
-            let outside = if a >= 0.0 { ratio > hi } else { ratio < lo };
-            pull[r] = if outside { 0.0 } else { weight * ratio * a };
-            kl[r] = ratio - 1.0 - log_ratio;
-            clipped[r] = f32::from(u8::from(outside));
-        }
-        for (j, (mean, &log_std)) in columns() {
-            let inverse = (-log_std).exp();
-            let action = self.minibatch.action(j, &self.block);
-            let out = &mut cotangent[j * BLOCK..][..count];
-            let mut lanes = [0.0_f32; 16];
-            for (r, out) in out.iter_mut().enumerate() {
-                let z = (action[r] - mean[r]) * inverse;
-                *out = pull[r] * z * inverse;
-                lanes[r % 16] += pull[r] * (z * z - 1.0);
-            }
-            log_std_gradient[j] += lanes.iter().sum::<f32>();
-        }
-        (f64::from(kl.iter().sum::<f32>()), f64::from(clipped.iter().sum::<f32>()))
     }
 }
 

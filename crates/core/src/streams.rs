@@ -21,7 +21,7 @@ pub enum Purpose {
     TrainingReset = 3,
     /// Action noise of training episodes.
     TrainingNoise = 4,
-    /// The order of rows in minibatches.
+    /// The order of rows in minibatches, and the rows of TRPO's curvature.
     Minibatches = 5,
     /// Initial weights of the value baseline.
     Baseline = 6,

@@ -7,6 +7,7 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::learner::LearnError;
 use crate::minibatch::BLOCK;
 
 /// Settings of an [`MlpBaseline`].
@@ -53,6 +54,17 @@ impl Default for MlpBaselineConfig {
     }
 }
 
+/// What an [`MlpBaseline`] has learned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MlpBaselineState {
+    params: Vec<f32>,
+    adam: Adam,
+    /// Running mean and second moment of the targets; none before the first fit.
+    moments: Option<(f64, f64)>,
+    /// Centre and scale of each state component that it sees, from the first batch.
+    scaling: Vec<(f32, f32)>,
+}
+
 /// V(s) = mean + std·network(s), where mean and std follow the targets and the last layer is corrected whenever they
 /// move, so that V does not jump (PopArt: van Hasselt et al. 2016, eqs. 9 and 10).
 #[derive(Debug)]
@@ -88,6 +100,24 @@ impl MlpBaseline {
         let tape = network.tape(BLOCK);
         let scaling = vec![(0.0, 1.0); seen];
         Self { config, network, params, adam, moments: None, scaling, obs_dim, state_dim, seed, tape }
+    }
+
+    pub(super) fn state(&self) -> MlpBaselineState {
+        MlpBaselineState {
+            params: self.params.clone(),
+            adam: self.adam.clone(),
+            moments: self.moments,
+            scaling: self.scaling.clone(),
+        }
+    }
+
+    pub(super) fn restore(&mut self, state: MlpBaselineState) -> Result<(), LearnError> {
+        LearnError::check_length("weights of the baseline", state.params.len(), self.params.len())?;
+        LearnError::check_length("moments of the baseline's optimiser", state.adam.len(), self.params.len())?;
+        LearnError::check_length("scales of the baseline", state.scaling.len(), self.scaling.len())?;
+        (self.params, self.adam) = (state.params, state.adam);
+        (self.moments, self.scaling) = (state.moments, state.scaling);
+        Ok(())
     }
 
     /// Takes centre and scale of the state from a batch.

@@ -4,12 +4,13 @@ mod linear;
 mod mlp;
 
 pub use linear::LinearBaseline;
-pub use mlp::{MlpBaseline, MlpBaselineConfig};
+pub use mlp::{MlpBaseline, MlpBaselineConfig, MlpBaselineState};
 
 use hwasp_core::Batch;
 use serde::{Deserialize, Serialize};
 
-use crate::gae::Advantages;
+use crate::gae::{AdvantageConfig, Advantages, advantages, normalize};
+use crate::learner::LearnError;
 
 /// Which baseline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +24,15 @@ pub enum BaselineConfig {
     },
     /// A perceptron.
     Mlp(MlpBaselineConfig),
+}
+
+/// What a baseline has learned: with its settings all that it takes to go on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum BaselineState {
+    /// The coefficients.
+    Linear(Vec<f64>),
+    /// Weights, optimiser and scales.
+    Mlp(MlpBaselineState),
 }
 
 /// A value baseline.
@@ -52,6 +62,45 @@ impl Baseline {
         match self {
             Self::Linear(linear) => linear.predict(batch),
             Self::Mlp(mlp) => mlp.predict(batch),
+        }
+    }
+
+    /// Advantages and what to learn from the batch, with the values as they are before it.
+    pub fn targets(
+        &mut self,
+        batch: &Batch,
+        config: &AdvantageConfig,
+        iteration: u64,
+    ) -> Result<Advantages, LearnError> {
+        let (values, last_values) = self.predict(batch);
+        let discounting = (config.discount, config.gae_lambda);
+        let mut targets = advantages(batch, &values, &last_values, discounting, config.bootstrap_truncated);
+        if !targets.advantage.iter().all(|a| a.is_finite()) {
+            return Err(LearnError::NotFinite { what: "an advantage", iteration });
+        }
+        if config.normalize {
+            normalize(&mut targets.advantage);
+        }
+        Ok(targets)
+    }
+
+    /// What it has learned.
+    pub fn state(&self) -> BaselineState {
+        match self {
+            Self::Linear(linear) => BaselineState::Linear(linear.coefficients().to_vec()),
+            Self::Mlp(mlp) => BaselineState::Mlp(mlp.state()),
+        }
+    }
+
+    /// Takes over what a baseline of the same settings had learned.
+    ///
+    /// # Errors
+    /// [`LearnError::State`] where it is not one of theirs; nothing has changed then.
+    pub fn restore(&mut self, state: BaselineState) -> Result<(), LearnError> {
+        match (self, state) {
+            (Self::Linear(linear), BaselineState::Linear(coefficients)) => linear.restore(coefficients),
+            (Self::Mlp(mlp), BaselineState::Mlp(state)) => mlp.restore(state),
+            _ => Err(LearnError::Baseline),
         }
     }
 

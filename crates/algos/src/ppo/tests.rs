@@ -1,5 +1,7 @@
 //! PPO's loss, gradient and metrics against arithmetic by hand.
 
+use std::ops::Range;
+
 use hwasp_core::{End, Episode, ParamGroup, Rows};
 
 use super::*;

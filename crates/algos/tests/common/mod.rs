@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use hwasp_algos::{BaselineConfig, Learner, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
+use hwasp_algos::{BaselineConfig, Learner, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Trpo, TrpoSettings};
 use hwasp_core::{
     Environment, EpisodeKind, Episodes, Executor, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec,
     Sampler, Serial,
@@ -100,15 +100,32 @@ impl Case {
     pub(crate) fn train(&self, executor: &dyn Executor, seed: u64, iterations: u64) -> Vec<f32> {
         let policy = self.sampler.policy();
         let params = policy.init(seed, self.output_gain);
-        let mut ppo = Ppo::new(&self.settings, Arc::clone(policy), params, seed);
+        let ppo = Ppo::new(&self.settings, Arc::clone(policy), params, seed);
+        self.run(executor, seed, iterations, ppo)
+    }
+
+    /// The same with TRPO in the stead of PPO.
+    pub(crate) fn train_trpo(
+        &self,
+        executor: &dyn Executor,
+        seed: u64,
+        iterations: u64,
+        settings: &TrpoSettings,
+    ) -> Vec<f32> {
+        let policy = self.sampler.policy();
+        let params = policy.init(seed, self.output_gain);
+        self.run(executor, seed, iterations, Trpo::new(settings, Arc::clone(policy), params, seed))
+    }
+
+    fn run(&self, executor: &dyn Executor, seed: u64, iterations: u64, mut learner: impl Learner) -> Vec<f32> {
         for iteration in 0..iterations {
             let progress = iteration as f64 / iterations as f64;
             let indices = 0..self.episodes;
             let training = Episodes { seed, iteration, indices, progress, kind: EpisodeKind::Training };
-            let batch = self.sampler.collect(executor, ppo.params(), &training).unwrap();
-            ppo.update(&batch, progress, iteration).unwrap();
+            let batch = self.sampler.collect(executor, learner.params(), &training).unwrap();
+            learner.update_on(executor, &batch, progress, iteration).unwrap();
         }
-        ppo.params().to_vec()
+        learner.params().to_vec()
     }
 
     /// Mean discounted return of the deterministic policy over whole episodes from held-out starts.
@@ -121,9 +138,13 @@ impl Case {
 
     /// Evaluation and the total of the design, before and after training.
     pub(crate) fn learn(&self, seed: u64, iterations: u64) -> [(f64, f64); 2] {
+        let before = self.judge(&self.sampler.policy().init(seed, self.output_gain));
+        [before, self.judge(&self.train(&Serial, seed, iterations))]
+    }
+
+    /// Evaluation and the total of the design.
+    pub(crate) fn judge(&self, params: &[f32]) -> (f64, f64) {
         let policy = self.sampler.policy();
-        let judge = |params: &[f32]| (self.evaluate(params, 40), policy.space().totals(&policy.design(params))[0]);
-        let before = judge(&policy.init(seed, self.output_gain));
-        [before, judge(&self.train(&Serial, seed, iterations))]
+        (self.evaluate(params, 40), policy.space().totals(&policy.design(params))[0])
     }
 }

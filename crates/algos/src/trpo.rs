@@ -1,0 +1,157 @@
+//! Trust region policy optimisation (Schulman et al. 2015, "Trust Region Policy Optimization", arXiv:1502.05477). Numbers
+//! in brackets are its equations; appendix C is the step.
+
+mod cg;
+mod config;
+mod fisher;
+mod line_search;
+mod passes;
+mod state;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use hwasp_core::{Batch, Executor, Policy, Purpose, Serial, gaussian, stream};
+
+pub use self::cg::{Solution, conjugate_gradient};
+pub use self::config::{FisherRows, TrpoConfig, TrpoSettings};
+use self::fisher::Fisher;
+use self::line_search::backtrack;
+use self::passes::Passes;
+pub use self::state::TrpoState;
+use crate::baseline::Baseline;
+use crate::learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
+use crate::minibatch::Minibatch;
+
+/// Keeps the length of a step finite where nothing curves, as the paper's toolkit has it.
+const LEAST_CURVATURE: f64 = 1e-8;
+
+/// The learner: a policy's parameters and a baseline.
+///
+/// An update is one step: minimise -mean(ρ·A) under mean KL(old || new) ≤ `max_kl` (14). Its direction is H⁻¹g with g the
+/// gradient of the objective and H the curvature of the divergence, its length √(2·`max_kl`/xᵀHx), shortened until it
+/// holds what it promises.
+pub struct Trpo<P: Policy> {
+    config: TrpoConfig,
+    policy: Arc<P>,
+    params: Vec<f32>,
+    baseline: Baseline,
+    seed: u64,
+    /// Updates so far that took no step.
+    rejected: u64,
+    /// Working memory.
+    passes: Passes<P>,
+    batch: Minibatch,
+    curvature: Minibatch,
+    candidate: Vec<f32>,
+    gradient: Vec<f64>,
+}
+
+impl<P: Policy> Trpo<P> {
+    /// Starts from `params`. `seed` names the streams of the curvature's rows and of the baseline.
+    pub fn new(settings: &TrpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
+        let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
+        Self {
+            config: settings.trpo.clone(),
+            passes: Passes::new(Arc::clone(&policy)),
+            batch: Minibatch::default(),
+            curvature: Minibatch::default(),
+            candidate: params.clone(),
+            gradient: vec![0.0; params.len()],
+            policy,
+            params,
+            baseline,
+            seed,
+            rejected: 0,
+        }
+    }
+
+    /// Gathers the batch, and the rows that its curvature is taken of.
+    fn gather(&mut self, batch: &Batch, advantage: &[f32], iteration: u64) {
+        let dims = (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim());
+        let all: Vec<u32> = (0..batch.rows() as u32).collect();
+        self.batch.gather(batch, advantage, &all, dims);
+        if self.config.fisher_rows.count(all.len()) < all.len() {
+            let mut numbers = stream(self.seed, Purpose::Minibatches, iteration, 0);
+            let some = self.config.fisher_rows.pick(all.len(), &mut numbers);
+            self.curvature.gather(batch, advantage, &some, dims);
+        }
+    }
+
+    /// One step from the gathered batch, left in `candidate`; where none is found that is the present parameters.
+    fn step(&mut self, executor: &dyn Executor, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
+        let not_finite = |what| LearnError::NotFinite { what, iteration };
+        let rows = self.batch.count;
+        let curvature = if self.config.fisher_rows.count(rows) < rows { &self.curvature } else { &self.batch };
+        let start = self.passes.gradient(executor, &self.batch, &self.params, progress, &mut self.gradient);
+        let norm = self.gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+        if !(start.is_finite() && norm.is_finite()) {
+            return Err(not_finite("the policy gradient"));
+        }
+        let fisher = Fisher::new(&self.passes, curvature, &self.params, progress, self.config.damping);
+        let solution =
+            conjugate_gradient(&self.gradient, self.config.cg_iterations, self.config.cg_tolerance, |v, product| {
+                fisher.product(executor, v, product);
+            });
+        // xᵀHx with Hx = g - r.
+        let terms = self.gradient.iter().zip(&solution.residual).zip(&solution.x);
+        let curved: f64 = terms.map(|((g, r), x)| x * (g - r)).sum();
+        let length = (2.0 * self.config.max_kl / (curved + LEAST_CURVATURE)).sqrt();
+        if !length.is_finite() || solution.x.iter().any(|x| !x.is_finite()) {
+            return Err(not_finite("the step"));
+        }
+        let (params, candidate, passes, batch) = (&self.params, &mut self.candidate, &self.passes, &self.batch);
+        let found = backtrack(start, &self.config, |fraction| {
+            for ((to, from), x) in candidate.iter_mut().zip(params).zip(&solution.x) {
+                *to = (f64::from(*from) - fraction * length * x) as f32;
+            }
+            passes.evaluate(executor, batch, (params, candidate), progress)
+        });
+        if found.fraction == 0.0 {
+            self.candidate.copy_from_slice(&self.params);
+            self.rejected += 1;
+        }
+        let mut log_std = vec![0.0; self.policy.action_dim()];
+        self.policy.log_std(&self.candidate, progress, &mut log_std);
+        Ok(UpdateMetrics {
+            kl: found.kl,
+            entropy: gaussian::entropy(&log_std),
+            grad_norm: norm,
+            epochs: 1,
+            trust_region: Some(TrustRegionMetrics {
+                step_fraction: found.fraction,
+                gain: start - found.loss,
+                cg_iterations: solution.iterations,
+                tried: found.tried,
+                rejected: self.rejected,
+            }),
+            ..UpdateMetrics::default()
+        })
+    }
+}
+
+impl<P: Policy> Learner for Trpo<P> {
+    fn params(&self) -> &[f32] {
+        &self.params
+    }
+
+    fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
+        self.update_on(&Serial, batch, progress, iteration)
+    }
+
+    fn update_on(
+        &mut self,
+        executor: &dyn Executor,
+        batch: &Batch,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
+        let targets = self.baseline.targets(batch, &self.config.advantages, iteration)?;
+        self.gather(batch, &targets.advantage, iteration);
+        let metrics = self.step(executor, progress, iteration)?;
+        self.params.copy_from_slice(&self.candidate);
+        self.baseline.fit(batch, &targets, progress, iteration);
+        Ok(metrics)
+    }
+}

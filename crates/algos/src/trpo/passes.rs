@@ -1,0 +1,216 @@
+//! Passes over the rows of a batch, on any number of threads with the same bits.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use hwasp_core::{Executor, Policy};
+
+use crate::minibatch::{BLOCK, Minibatch};
+use crate::surrogate::Surrogate;
+
+/// Blocks of rows that one job works on, at least.
+const FEWEST_BLOCKS: usize = 4;
+/// Jobs of a pass at most: each keeps a gradient.
+const MOST_JOBS: usize = 256;
+
+/// Blocks of rows that one job works on, and jobs. They follow from the rows alone, and sums go over jobs in their order:
+/// who works does not matter.
+fn jobs(rows: &Minibatch) -> (usize, usize) {
+    let blocks = rows.count.div_ceil(BLOCK);
+    let each = blocks.div_ceil(MOST_JOBS).max(FEWEST_BLOCKS);
+    (each, blocks.div_ceil(each))
+}
+
+/// A policy, with what passes over a batch write. Working memory belongs to whoever works, results to the job.
+pub(super) struct Passes<P: Policy> {
+    policy: Arc<P>,
+    idle: Mutex<Vec<Worker<P>>>,
+    shards: Vec<Mutex<Shard>>,
+}
+
+struct Worker<P: Policy> {
+    tape: P::Tape,
+    cotangent: Vec<f32>,
+}
+
+/// What one job gave.
+#[derive(Default)]
+struct Shard {
+    gradient: Vec<f32>,
+    log_std_gradient: Vec<f32>,
+    /// Means of the policy that acted, `[A × BLOCK]` for each block.
+    old_mean: Vec<f32>,
+    surrogate: f64,
+    kl: f64,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<P: Policy> Passes<P> {
+    pub(super) fn new(policy: Arc<P>) -> Self {
+        Self { policy, idle: Mutex::new(Vec::new()), shards: Vec::new() }
+    }
+
+    pub(super) fn policy(&self) -> &P {
+        &self.policy
+    }
+
+    fn log_std(&self, params: &[f32], progress: f64) -> Vec<f32> {
+        let mut log_std = vec![0.0; self.policy.action_dim()];
+        self.policy.log_std(params, progress, &mut log_std);
+        log_std
+    }
+
+    /// Calls `job` for each stretch of the rows with a worker bound to nothing, the place for results, and its blocks.
+    fn each(
+        &self,
+        executor: &dyn Executor,
+        rows: &Minibatch,
+        job: impl Fn(&mut Worker<P>, &mut Shard, &mut dyn Iterator<Item = Range<usize>>) + Sync,
+    ) {
+        let (each, count) = jobs(rows);
+        executor.for_each(count, &|i| {
+            let idle = lock(&self.idle).pop();
+            let mut worker = idle.unwrap_or_else(|| Worker {
+                tape: self.policy.tape(BLOCK),
+                cotangent: vec![0.0; self.policy.action_dim() * BLOCK],
+            });
+            job(&mut worker, &mut lock(&self.shards[i]), &mut rows.blocks().skip(i * each).take(each));
+            lock(&self.idle).push(worker);
+        });
+    }
+
+    /// Adds up the gradients of all jobs, in their order.
+    fn sum_gradients(&self, rows: &Minibatch, gradient: &mut [f64]) {
+        gradient.fill(0.0);
+        for shard in &self.shards[..jobs(rows).1] {
+            for (to, &from) in gradient.iter_mut().zip(&lock(shard).gradient) {
+                *to += f64::from(from);
+            }
+        }
+    }
+
+    /// The loss -mean(ρ·A) (14) at `params`, the parameters that acted, and its gradient. Their means are kept for
+    /// [`evaluate`](Self::evaluate).
+    pub(super) fn gradient(
+        &mut self,
+        executor: &dyn Executor,
+        rows: &Minibatch,
+        params: &[f32],
+        progress: f64,
+        gradient: &mut [f64],
+    ) -> f64 {
+        let ((each, count), actions) = (jobs(rows), self.policy.action_dim());
+        self.shards.resize_with(self.shards.len().max(count), || {
+            Mutex::new(Shard {
+                gradient: vec![0.0; params.len()],
+                log_std_gradient: vec![0.0; actions],
+                ..Shard::default()
+            })
+        });
+        let log_std = self.log_std(params, progress);
+        self.each(executor, rows, |worker, shard, blocks| {
+            self.policy.bind(params, &mut worker.tape);
+            shard.log_std_gradient.fill(0.0);
+            shard.surrogate = 0.0;
+            shard.old_mean.resize(actions * BLOCK * each, 0.0);
+            let kept = shard.old_mean.chunks_exact_mut(actions * BLOCK);
+            for (block, kept) in blocks.zip(kept) {
+                let taken = rows.rows(&block);
+                let mean = self.policy.forward(&taken, &mut worker.tape);
+                kept.copy_from_slice(&mean[..actions * BLOCK]);
+                let surrogate =
+                    Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
+                shard.surrogate += surrogate.sum();
+                surrogate.differentiate(&mut worker.cotangent, &mut shard.log_std_gradient);
+                self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
+            }
+            self.policy.gradient(&mut worker.tape, &mut shard.gradient);
+            if let Some(range) = self.policy.log_std_params() {
+                shard.gradient[range].copy_from_slice(&shard.log_std_gradient);
+            }
+        });
+        self.sum_gradients(rows, gradient);
+        let shards = self.shards[..count].iter();
+        -shards.map(|shard| lock(shard).surrogate).sum::<f64>() / rows.count.max(1) as f64
+    }
+
+    /// Writes Jᵀ·M·J·v with J the derivative of the means at `params`, M = diag(`weight`) for every row, and v = `tangent`;
+    /// zero for the log standard deviations.
+    pub(super) fn gauss_newton(
+        &self,
+        executor: &dyn Executor,
+        rows: &Minibatch,
+        params: &[f32],
+        tangent: &[f32],
+        weight: &[f32],
+        product: &mut [f64],
+    ) {
+        self.each(executor, rows, |worker, shard, blocks| {
+            self.policy.bind(params, &mut worker.tape);
+            self.policy.bind_tangent(tangent, &mut worker.tape);
+            for block in blocks {
+                let taken = rows.rows(&block);
+                self.policy.forward(&taken, &mut worker.tape);
+                let moved = self.policy.jvp(&taken, &mut worker.tape).chunks_exact(BLOCK);
+                for ((to, from), weight) in worker.cotangent.chunks_exact_mut(BLOCK).zip(moved).zip(weight) {
+                    for (to, from) in to.iter_mut().zip(from) {
+                        *to = weight * from;
+                    }
+                }
+                self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
+            }
+            self.policy.gradient(&mut worker.tape, &mut shard.gradient);
+        });
+        self.sum_gradients(rows, product);
+    }
+
+    /// The loss at `params`, and the mean of KL(old || new) over the rows, nats, both exact; old is what
+    /// [`gradient`](Self::gradient) last saw, over the same rows.
+    pub(super) fn evaluate(
+        &self,
+        executor: &dyn Executor,
+        rows: &Minibatch,
+        (old, params): (&[f32], &[f32]),
+        progress: f64,
+    ) -> (f64, f64) {
+        let actions = self.policy.action_dim();
+        let (old, log_std) = (self.log_std(old, progress), self.log_std(params, progress));
+        self.each(executor, rows, |worker, shard, blocks| {
+            self.policy.bind(params, &mut worker.tape);
+            (shard.surrogate, shard.kl) = (0.0, 0.0);
+            let kept = shard.old_mean.chunks_exact(actions * BLOCK);
+            for (block, kept) in blocks.zip(kept) {
+                let mean = self.policy.forward(&rows.rows(&block), &mut worker.tape);
+                shard.kl += divergence((kept, &old), (mean, &log_std), block.len());
+                let surrogate =
+                    Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
+                shard.surrogate += surrogate.sum();
+            }
+        });
+        let (mut surrogate, mut kl) = (0.0, 0.0);
+        for shard in &self.shards[..jobs(rows).1] {
+            let shard = lock(shard);
+            (surrogate, kl) = (surrogate + shard.surrogate, kl + shard.kl);
+        }
+        let n = rows.count.max(1) as f64;
+        (-surrogate / n, kl / n)
+    }
+}
+
+/// Σ KL(old || new) over the first rows of a block of means `[A × BLOCK]`, nats:
+/// log σ' - log σ + (σ² + (μ - μ')²)/(2σ'²) - ½ for each component.
+fn divergence((old, old_log_std): (&[f32], &[f32]), (new, log_std): (&[f32], &[f32]), rows: usize) -> f64 {
+    let mut sum = 0.0;
+    for j in 0..log_std.len() {
+        let (was, is) = (f64::from(old_log_std[j]), f64::from(log_std[j]));
+        let precision = (-2.0 * is).exp();
+        let moved = old[j * BLOCK..][..rows].iter().zip(&new[j * BLOCK..][..rows]);
+        let squares: f64 = moved.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
+        let spread = is - was + 0.5 * (2.0 * (was - is)).exp_m1();
+        sum += rows as f64 * spread + 0.5 * squares * precision;
+    }
+    sum
+}

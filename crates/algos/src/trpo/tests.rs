@@ -1,0 +1,264 @@
+//! The step against an independent double-precision model of the policy, and what an update must keep.
+
+use std::sync::Arc;
+
+use hwasp_core::{
+    EpisodeKind, Episodes, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec, Sampler, Threads,
+};
+use hwasp_diff::Activation;
+use hwasp_tasks::mass_spring::{MassSpring, MassSpringSettings};
+use proptest::prelude::*;
+use rand::RngExt;
+
+use super::*;
+use crate::baseline::{BaselineConfig, MlpBaselineConfig};
+
+mod model;
+use model::Model;
+
+/// Three springs, one in the action, one in the graph, one fixed, under a small controller.
+fn policy() -> (MassSpring, Arc<HardwarePolicy>) {
+    let problem = MassSpring::stiffness(MassSpringSettings { count: 3, ..MassSpringSettings::default() }).unwrap();
+    let noise = Noise {
+        command: 0.3,
+        effort: 3.0,
+        design: 0.1,
+        command_anneal: None,
+        effort_anneal: None,
+        design_anneal: None,
+        train: true,
+    };
+    let spec = PolicySpec {
+        hidden: vec![8, 8],
+        activation: Activation::Tanh,
+        squash: true,
+        observation_center: vec![0.1, 0.0],
+        observation_scale: vec![0.1, 0.5],
+        law: problem.law(),
+        placements: vec![Placement::Graph, Placement::Action, Placement::Fixed(5.0)],
+        noise,
+    };
+    let policy = HardwarePolicy::new(spec, problem.make(None).spec()).unwrap();
+    (problem, Arc::new(policy))
+}
+
+fn collect(problem: &MassSpring, policy: &Arc<HardwarePolicy>, params: &[f32], iteration: u64, episodes: u64) -> Batch {
+    let sampler = Sampler::new(Arc::clone(policy), Arc::new(problem.clone()), Some(50));
+    let kind = EpisodeKind::Training;
+    sampler
+        .collect(&Serial, params, &Episodes { seed: 1, iteration, indices: 0..episodes, progress: 0.0, kind })
+        .unwrap()
+}
+
+fn settings(config: TrpoConfig) -> TrpoSettings {
+    TrpoSettings { trpo: config, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } }
+}
+
+fn minibatch(policy: &HardwarePolicy, batch: &Batch) -> Minibatch {
+    let mut rows = Minibatch::default();
+    let all: Vec<u32> = (0..batch.rows() as u32).collect();
+    let dims = (policy.obs_dim(), policy.state_dim(), policy.action_dim());
+    rows.gather(batch, &vec![0.0; all.len()], &all, dims);
+    rows
+}
+
+/// H·v without damping, through the passes that an update uses.
+fn product(policy: &Arc<HardwarePolicy>, batch: &Batch, params: &[f32], v: &[f64]) -> Vec<f64> {
+    let rows = minibatch(policy, batch);
+    let mut passes = Passes::new(Arc::clone(policy));
+    let mut out = vec![0.0; params.len()];
+    passes.gradient(&Serial, &rows, params, 0.0, &mut out);
+    Fisher::new(&passes, &rows, params, 0.0, 0.0).product(&Serial, v, &mut out);
+    out
+}
+
+fn norm(v: impl Iterator<Item = f64>) -> f64 {
+    v.map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// 300 rows: two jobs, the second with a block that is not full. Differences of the gradient of KL(old || new), in `f64`
+/// through controller, law and noise.
+#[test]
+fn fisher_products_are_differences_of_the_gradient_of_the_divergence() {
+    let (problem, policy) = policy();
+    for seed in 0..3 {
+        let params = policy.init(seed, 1.0);
+        let batch = collect(&problem, &policy, &params, 0, 6);
+        let model = Model::new(&policy, &batch);
+        let old: Vec<f64> = params.iter().map(|&p| f64::from(p)).collect();
+        let mut numbers = stream(seed, Purpose::Check, 0, 0);
+        let v: Vec<f64> = params.iter().map(|_| f64::from((numbers.random::<f64>() - 0.5) as f32)).collect();
+        let h = 1e-5;
+        let moved = |h: f64| {
+            let new: Vec<f64> = old.iter().zip(&v).map(|(p, v)| p + h * v).collect();
+            model.divergence(&old, &new).1
+        };
+        let (ahead, behind) = (moved(h), moved(-h));
+        let wanted: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * h)).collect();
+        let found = product(&policy, &batch, &params, &v);
+        for group in policy.groups() {
+            let at = group.range.clone();
+            let off = norm(found[at.clone()].iter().zip(&wanted[at.clone()]).map(|(a, b)| a - b));
+            let all = norm(wanted[at].iter().copied());
+            println!("{}: {:.1e} of {all:.1e}", group.name, off / all);
+            assert!(all > 0.0 && off < 1e-5 * all, "{}: {off} of {all}", group.name);
+        }
+    }
+}
+
+/// KL of two Gaussians whose log standard deviations differ by d: d + ½(exp(-2d) - 1) = d² + O(d³), so that its second
+/// derivative is 2, whatever σ and however many rows; and nothing of it is seen by the other parameters.
+#[test]
+fn log_standard_deviations_by_hand() {
+    let (problem, policy) = policy();
+    let params = policy.init(0, 1.0);
+    let batch = collect(&problem, &policy, &params, 0, 2);
+    let range = policy.log_std_params().unwrap();
+    let mut v = vec![0.0; params.len()];
+    for (k, v) in v[range.clone()].iter_mut().enumerate() {
+        *v = 1.0 + k as f64;
+    }
+    let found = product(&policy, &batch, &params, &v);
+    assert!(found[..range.start].iter().all(|&x| x == 0.0));
+    for (k, x) in found[range].iter().enumerate() {
+        assert_eq!(*x, 2.0 * (1.0 + k as f64));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Wherever it starts and whatever the limit, an update lowers the loss and stays within the divergence, both
+    /// judged by the model, or it changes nothing.
+    #[test]
+    fn an_update_gains_within_the_bound(seed in 0..1000_u64, exponent in -4.0..0.5_f64, share in 0.05..1.0_f64) {
+        let (problem, policy) = policy();
+        let params = policy.init(seed, 1.0);
+        let max_kl = 10_f64.powf(exponent);
+        let config = TrpoConfig { max_kl, fisher_rows: FisherRows::Fraction(share), ..TrpoConfig::default() };
+        let mut trpo = Trpo::new(&settings(config.clone()), Arc::clone(&policy), params.clone(), seed);
+        let batch = collect(&problem, &policy, &params, seed, 6);
+        let targets = trpo.baseline.targets(&batch, &config.advantages, 0).unwrap();
+        let metrics = trpo.update(&batch, 0.0, 0).unwrap();
+        let region = metrics.trust_region.unwrap();
+        let model = Model::new(&policy, &batch);
+        let wide = |p: &[f32]| p.iter().map(|&p| f64::from(p)).collect::<Vec<_>>();
+        let (old, new) = (wide(&params), wide(trpo.params()));
+        let kl = model.divergence(&old, &new).0;
+        prop_assert!((kl - metrics.kl).abs() < 1e-4 * max_kl, "{kl} was told as {}", metrics.kl);
+        prop_assert!(kl <= max_kl * (1.0 + 1e-4));
+        let gain = model.surrogate(&new, &targets.advantage) - model.surrogate(&old, &targets.advantage);
+        prop_assert!((gain - region.gain).abs() < 1e-4, "{gain} was told as {}", region.gain);
+        if region.step_fraction == 0.0 {
+            prop_assert_eq!((trpo.params(), region.rejected, region.tried), (&params[..], 1, 15));
+        } else {
+            prop_assert!(gain > 0.0 && region.rejected == 0);
+            prop_assert!((region.step_fraction - 0.8_f64.powi(region.tried as i32 - 1)).abs() < 1e-12);
+        }
+    }
+}
+
+/// A step of the default settings uses most of what it may, which a step of wrong length or direction would not.
+#[test]
+fn the_first_step_nearly_fits() {
+    let (problem, policy) = policy();
+    let params = policy.init(2, 1.0);
+    let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 2);
+    let metrics = trpo.update(&collect(&problem, &policy, &params, 0, 20), 0.0, 0).unwrap();
+    let region = metrics.trust_region.unwrap();
+    assert!(metrics.kl > 0.005 && metrics.kl <= 0.01, "{}", metrics.kl);
+    assert!(region.step_fraction > 0.6 && region.cg_iterations == 10, "{region:?}");
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let (problem, policy) = policy();
+    let params = policy.init(0, 1.0);
+    let batch = collect(&problem, &policy, &params, 0, 30);
+    let config = TrpoConfig { fisher_rows: FisherRows::Count(700), ..TrpoConfig::default() };
+    let train = |executor: &dyn Executor| {
+        let mut trpo = Trpo::new(&settings(config.clone()), Arc::clone(&policy), params.clone(), 0);
+        let metrics = trpo.update_on(executor, &batch, 0.0, 0).unwrap();
+        (trpo.params().iter().map(|p| p.to_bits()).collect::<Vec<_>>(), metrics)
+    };
+    let serial = train(&Serial);
+    assert!(serial.1.trust_region.unwrap().step_fraction > 0.0);
+    for count in [1, 2, 3] {
+        assert_eq!(serial, train(&Threads::new(count).unwrap()), "{count} threads");
+    }
+}
+
+#[test]
+fn resumes_bit_for_bit() {
+    let (problem, policy) = policy();
+    for baseline in [
+        BaselineConfig::Linear { ridge: 1e-5, privileged: true },
+        BaselineConfig::Mlp(MlpBaselineConfig { privileged: true, ..MlpBaselineConfig::default() }),
+    ] {
+        let trpo = TrpoConfig { fisher_rows: FisherRows::Fraction(0.3), ..TrpoConfig::default() };
+        let settings = TrpoSettings { trpo, baseline };
+        let batches = |i, params: &[f32]| collect(&problem, &policy, params, i, 4);
+        let mut whole = Trpo::new(&settings, Arc::clone(&policy), policy.init(0, 1.0), 0);
+        let mut saved = String::new();
+        for i in 0..4 {
+            if i == 2 {
+                saved = serde_json::to_string(&whole.state()).unwrap();
+            }
+            whole.update(&batches(i, whole.params()), 0.0, i).unwrap();
+        }
+        let state: TrpoState = serde_json::from_str(&saved).unwrap();
+        let mut resumed = Trpo::resume(&settings, Arc::clone(&policy), state.clone(), 0).unwrap();
+        for i in 2..4 {
+            resumed.update(&batches(i, resumed.params()), 0.0, i).unwrap();
+        }
+        assert_eq!(resumed.state(), whole.state());
+        assert_ne!(resumed.state().params, state.params);
+
+        let short = TrpoState { params: vec![0.0; 3], ..state.clone() };
+        let error = Trpo::resume(&settings, Arc::clone(&policy), short, 0).err().unwrap();
+        assert!(error.to_string().starts_with("the saved state has 3 parameters, but "), "{error}");
+        let other = TrpoSettings {
+            baseline: match settings.baseline {
+                BaselineConfig::Linear { .. } => BaselineConfig::Mlp(MlpBaselineConfig::default()),
+                BaselineConfig::Mlp(_) => BaselineConfig::Linear { ridge: 1.0, privileged: false },
+            },
+            ..settings
+        };
+        assert_eq!(Trpo::resume(&other, Arc::clone(&policy), state, 0).err(), Some(LearnError::Baseline));
+    }
+}
+
+#[test]
+fn numbers_that_are_none_change_nothing() {
+    let (problem, policy) = policy();
+    let params = policy.init(0, 1.0);
+    let sound = collect(&problem, &policy, &params, 0, 4);
+    let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 0);
+    let before = trpo.state();
+    let (mut reward, mut old, mut action) = (sound.clone(), sound.clone(), sound.clone());
+    reward.reward[1] = f64::NAN;
+    old.log_prob[1] = f32::NAN;
+    action.action[1] = f32::INFINITY;
+    for (batch, what) in [(reward, "an advantage"), (old, "the policy gradient"), (action, "the policy gradient")] {
+        let error = trpo.update(&batch, 0.0, 7).unwrap_err();
+        assert_eq!(error, LearnError::NotFinite { what, iteration: 7 });
+        assert_eq!(trpo.state(), before);
+    }
+    trpo.update(&sound, 0.0, 7).unwrap();
+    assert_ne!(trpo.params(), params);
+}
+
+/// Where all rewards are nothing so are advantages and gradient, and there is no way to go.
+#[test]
+fn nothing_to_gain_is_no_step() {
+    let (problem, policy) = policy();
+    let params = policy.init(0, 1.0);
+    let mut batch = collect(&problem, &policy, &params, 0, 4);
+    batch.reward.fill(0.0);
+    let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 0);
+    for updates in 1..3 {
+        let metrics = trpo.update(&batch, 0.0, 0).unwrap();
+        let region = metrics.trust_region.unwrap();
+        assert_eq!((region.step_fraction, region.rejected, metrics.kl), (0.0, updates, 0.0));
+        assert_eq!(trpo.params(), params);
+    }
+}

@@ -44,7 +44,7 @@ writer.write(Event(wall_time=2.5, step=100000, summary=Summary(value=values)).Se
 print(kept.getvalue().hex())
 """
 
-COLUMNS = {name: f"train/{name}" for name in ("return", "discounted_return", "kl", "entropy")} | {"gear": "design/gear"}
+COLUMNS = {name: f"train/{name}" for name in ("return", "discounted_return", "kl", "entropy", "step_fraction")} | {"gear": "design/gear"}
 
 
 def inside(python, program, *arguments):

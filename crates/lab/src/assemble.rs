@@ -1,10 +1,11 @@
 //! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
 
+mod learner;
 mod problem;
 
 use std::sync::Arc;
 
-use hwasp_algos::{BaselineConfig, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings};
+use hwasp_algos::{Learner, Ppo, Trpo};
 use hwasp_core::{
     Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose,
     stream,
@@ -15,8 +16,9 @@ use hwasp_tasks::pendulum::PendulumError;
 use hwasp_tasks::reach::ReachError;
 use thiserror::Error;
 
-use crate::spec::{ActivationKind, Algorithm, BaselineKind, Method, Place, Spec};
-use problem::{initial, problem};
+pub use self::learner::LearnerSettings;
+use self::problem::{initial, problem};
+use crate::spec::{ActivationKind, Method, Place, Spec};
 
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
@@ -102,7 +104,7 @@ pub struct Assembly {
     /// Controller and hardware composed.
     pub policy: Arc<HardwarePolicy>,
     /// Settings of the learner.
-    pub learner: PpoSettings,
+    pub learner: LearnerSettings,
     spec: Spec,
 }
 
@@ -112,7 +114,8 @@ impl Assembly {
         let problem = problem(spec)?;
         let policy =
             HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
-        let assembly = Self { problem, policy: Arc::new(policy), learner: learner(spec), spec: spec.clone() };
+        let assembly =
+            Self { problem, policy: Arc::new(policy), learner: LearnerSettings::new(spec), spec: spec.clone() };
         assembly.check_budget()?;
         Ok(assembly)
     }
@@ -136,9 +139,12 @@ impl Assembly {
     }
 
     /// A learner that starts from `params`.
-    pub fn learner(&self, params: Vec<f32>) -> Ppo<HardwarePolicy> {
-        let Algorithm::Ppo = self.spec.learner.algorithm;
-        Ppo::new(&self.learner, Arc::clone(&self.policy), params, self.spec.seed)
+    pub fn learner(&self, params: Vec<f32>) -> Box<dyn Learner> {
+        let (policy, seed) = (Arc::clone(&self.policy), self.spec.seed);
+        match &self.learner {
+            LearnerSettings::Ppo(settings) => Box::new(Ppo::new(settings, policy, params, seed)),
+            LearnerSettings::Trpo(settings) => Box::new(Trpo::new(settings, policy, params, seed)),
+        }
     }
 
     /// The trained controller on the built hardware: every design parameter fixed to `built`, in the world it is for.
@@ -197,42 +203,6 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
             design_anneal: anneal(noise.design_final, noise.design),
             // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
             train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),
-        },
-    }
-}
-
-fn learner(spec: &Spec) -> PpoSettings {
-    let (ppo, baseline) = (&spec.ppo, &spec.baseline);
-    let positive = |x: f64| (x > 0.0).then_some(x);
-    PpoSettings {
-        ppo: PpoConfig {
-            discount: ppo.discount,
-            gae_lambda: ppo.gae_lambda,
-            clip_ratio: ppo.clip_ratio,
-            epochs: ppo.epochs,
-            minibatch_rows: ppo.minibatch_rows,
-            learning_rate: ppo.learning_rate,
-            learning_rate_final: ppo.learning_rate_final,
-            design_lr_scale: spec.design.learning_rate_scale,
-            log_std_lr_scale: spec.noise.learning_rate_scale,
-            adam_epsilon: ppo.adam_epsilon,
-            entropy_coef: ppo.entropy_coef,
-            max_grad_norm: positive(ppo.max_grad_norm),
-            target_kl: positive(ppo.target_kl),
-            normalize_advantages: ppo.normalize_advantages,
-            bootstrap_truncated: ppo.bootstrap_truncated,
-        },
-        baseline: match baseline.kind {
-            BaselineKind::Linear => BaselineConfig::Linear { ridge: baseline.ridge, privileged: baseline.privileged },
-            BaselineKind::Mlp => BaselineConfig::Mlp(MlpBaselineConfig {
-                hidden: baseline.hidden.clone(),
-                learning_rate: baseline.learning_rate,
-                learning_rate_final: ppo.learning_rate_final,
-                epochs: baseline.epochs,
-                minibatch_rows: ppo.minibatch_rows,
-                max_grad_norm: positive(ppo.max_grad_norm),
-                privileged: baseline.privileged,
-            }),
         },
     }
 }

@@ -145,7 +145,7 @@ pub fn evaluate_in(
     let kind = EpisodeKind::Evaluation;
     let episodes_asked = Episodes { seed, iteration: 0, indices: 0..episodes, progress: 1.0, kind };
     let batch = sampler.collect(executor, controller, &episodes_asked)?;
-    let discounted = batch.returns(assembly.spec().ppo.discount);
+    let discounted = batch.returns(assembly.spec().discount());
     let mut stream = Stream::seed_from_u64(seed);
     let sample = Sample::new(&discounted)?;
     Ok(Evaluation {

@@ -21,7 +21,7 @@ mod summary;
 mod tensorboard;
 mod train;
 
-pub use assemble::{AssembleError, Assembly, Problems, World};
+pub use assemble::{AssembleError, Assembly, LearnerSettings, Problems, World};
 pub use drawing::Drawing;
 pub use evaluate::{EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native};
 pub use observer::{Event, Observer, ObserverError};

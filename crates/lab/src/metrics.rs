@@ -9,6 +9,7 @@
 //! | `return` | the same, undiscounted | reward |
 //! | `kl` | mean KL divergence of the policy before and after the update | nat |
 //! | `entropy` | entropy of the policy | nat |
+//! | `step_fraction` | share of TRPO's full step that was taken, 0 for none; 1 for PPO | - |
 //! | one per design total, such as `stiffness_total` | the sum of a design group | SI |
 //!
 //! No field is ever quoted. Numbers are written in the shortest form that reads back to the same bits; what is not
@@ -23,8 +24,8 @@ pub use error::MetricsError;
 use error::shown;
 
 /// The columns that every table has, in order; the design totals follow.
-pub const FIXED_COLUMNS: [&str; 7] =
-    ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy"];
+pub const FIXED_COLUMNS: [&str; 8] =
+    ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
 /// The most design totals in a table.
 pub const MOST_TOTALS: usize = 64;
 /// The most rows that are read.
@@ -51,6 +52,8 @@ pub struct MetricsRow {
     pub kl: f64,
     /// Entropy of the policy, nat.
     pub entropy: f64,
+    /// Share of TRPO's full step that was taken, 0 for none; 1 for PPO, NaN for searches.
+    pub step_fraction: f64,
     /// One per design total of the table, in its order, SI.
     pub design_totals: Vec<f64>,
 }
@@ -86,7 +89,8 @@ impl<W: Write> MetricsWriter<W> {
             return Err(MetricsError::Fields { line: 0, found, expected });
         }
         let mut text = format!("{},{}", row.iteration, row.env_steps);
-        let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy];
+        let fixed =
+            [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
         for value in fixed.iter().chain(&row.design_totals) {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let _ = write!(text, ",{value:?}");
@@ -199,6 +203,7 @@ fn read_row(text: &str, totals: &[String]) -> Result<MetricsRow, MetricsError> {
         undiscounted_return: real()?,
         kl: real()?,
         entropy: real()?,
+        step_fraction: real()?,
         design_totals: totals.iter().map(|_| real()).collect::<Result<_, _>>()?,
     })
 }

@@ -83,7 +83,7 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned,
         let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
         let totals = assembly.policy.space().totals(&assembly.policy.design(&problem.params(&search.center())));
         // There is no policy whose change or spread could be told.
-        learned.tell((mean(|r| r.0), mean(|r| r.1)), (f64::NAN, f64::NAN), totals, run)?;
+        learned.tell((mean(|r| r.0), mean(|r| r.1)), None, totals, run)?;
     }
     learned.params = match best {
         Some((_, best)) if spec.method.trains_inside() => best,
@@ -197,7 +197,7 @@ impl Problem<'_> {
         let sound = batch.faults.is_empty();
         Scored {
             params,
-            returns: sound.then(|| mean_returns(&batch, spec.ppo.discount)),
+            returns: sound.then(|| mean_returns(&batch, spec.discount())),
             env_steps: batch.env_steps(),
             discarded_episodes: batch.faults.len() as u64,
             seen: if sound && self.filter.is_some() { batch.obs } else { Vec::new() },

@@ -15,7 +15,7 @@
 //!
 //! | tag | meaning | steps |
 //! |---|---|---|
-//! | `train/return`, `train/discounted_return`, `train/kl`, `train/entropy` | as in [`metrics`](crate::metrics) | every iteration |
+//! | `train/return`, `train/discounted_return`, `train/kl`, `train/entropy`, `train/step_fraction` | as in [`metrics`](crate::metrics) | every iteration |
 //! | `design/…`, such as `design/stiffness_total` | the design totals, SI | every iteration |
 //! | `evaluation/return`, `evaluation/discounted_return` | the means of the evaluation | the last |
 //! | `evaluation/median_discounted_return`, `evaluation/worst_discounted_return` | over its episodes | the last |
@@ -95,6 +95,7 @@ impl Observer for TensorBoard {
                     ("train/discounted_return", row.discounted_return),
                     ("train/kl", row.kl),
                     ("train/entropy", row.entropy),
+                    ("train/step_fraction", row.step_fraction),
                 ];
                 let totals = self.totals.clone();
                 let design = totals.iter().map(String::as_str).zip(row.design_totals.iter().copied());

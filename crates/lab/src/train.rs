@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use hwasp_algos::{LearnError, Learner, SearchError};
+use hwasp_algos::{LearnError, SearchError, UpdateMetrics};
 use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, RolloutError, Sampler};
 use thiserror::Error;
 
@@ -119,11 +119,11 @@ pub(crate) struct Learned {
 }
 
 impl Learned {
-    /// Counts an iteration whose steps are counted already, and tells of it. `update` gives KL divergence and entropy.
+    /// Counts an iteration whose steps are counted already, and tells of it; a search has no update.
     pub(crate) fn tell(
         &mut self,
         returns: (f64, f64),
-        (kl, entropy): (f64, f64),
+        update: Option<UpdateMetrics>,
         design_totals: Vec<f64>,
         run: &mut Loop<'_>,
     ) -> Result<(), ObserverError> {
@@ -137,8 +137,9 @@ impl Learned {
             wall_s: run.began.elapsed().as_secs_f64(),
             discounted_return: returns.0,
             undiscounted_return: returns.1,
-            kl,
-            entropy,
+            kl: update.map_or(f64::NAN, |u| u.kl),
+            entropy: update.map_or(f64::NAN, |u| u.entropy),
+            step_fraction: update.map_or(f64::NAN, |u| u.trust_region.map_or(1.0, |r| r.step_fraction)),
             design_totals,
         }))?;
         self.iterations += 1;
@@ -173,9 +174,9 @@ pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learne
         let batch = sampler.collect(run.executor, learner.params(), &asked)?;
         learned.env_steps += batch.env_steps();
         learned.discarded_episodes += batch.faults.len() as u64;
-        let update = learner.update(&batch, progress, iteration)?;
+        let update = learner.update_on(run.executor, &batch, progress, iteration)?;
         let totals = assembly.policy.space().totals(&assembly.policy.design(learner.params()));
-        learned.tell(mean_returns(&batch, spec.ppo.discount), (update.kl, update.entropy), totals, run)?;
+        learned.tell(mean_returns(&batch, spec.discount()), Some(update), totals, run)?;
     }
     learned.params = learner.params().to_vec();
     Ok(learned)

@@ -4,7 +4,7 @@
 
 use hwasp_lab::metrics::{FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsRow, MetricsTable, MetricsWriter};
 
-fn row(iteration: u64, values: [f64; 7]) -> MetricsRow {
+fn row(iteration: u64, values: [f64; 8]) -> MetricsRow {
     MetricsRow {
         iteration,
         env_steps: 4000 * (iteration + 1),
@@ -13,7 +13,8 @@ fn row(iteration: u64, values: [f64; 7]) -> MetricsRow {
         undiscounted_return: values[2],
         kl: values[3],
         entropy: values[4],
-        design_totals: values[5..].to_vec(),
+        step_fraction: values[5],
+        design_totals: values[6..].to_vec(),
     }
 }
 
@@ -39,14 +40,14 @@ fn message(body: &str) -> String {
 }
 
 fn bits(row: &MetricsRow) -> Vec<u64> {
-    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy];
+    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
     fixed.iter().chain(&row.design_totals).map(|v| v.to_bits()).collect()
 }
 
 #[test]
 fn numbers_come_back_with_their_bits() {
-    let hard = [0.1 + 0.2, -1.0 / 3.0, 1e300, 5e-324, -0.0, f64::MAX, 19.6];
-    let odd = [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, 0.0, 2f64.powi(60)];
+    let hard = [0.1 + 0.2, -1.0 / 3.0, 1e300, 5e-324, -0.0, f64::MAX, 0.64, 19.6];
+    let odd = [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, f64::MIN, 0.0, 2f64.powi(60)];
     let rows = [row(0, hard), row(1, odd), row(u64::MAX / 4001 - 2, hard)];
     let table = read(written(&rows)).unwrap();
     assert_eq!(table.design_totals, ["stiffness_total", "length_total"]);
@@ -60,11 +61,12 @@ fn numbers_come_back_with_their_bits() {
 
 #[test]
 fn the_text_is_plain_and_short() {
-    let text = String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 65.5, 1e-9])])).unwrap();
+    let text =
+        String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 0.8, 65.5, 1e-9])])).unwrap();
     assert_eq!(
         text,
-        "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,stiffness_total,length_total\n\
-         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,65.5,1e-9\n"
+        "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,stiffness_total,length_total\n\
+         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,65.5,1e-9\n"
     );
     assert!(read(text).unwrap().rows[0].kl.is_nan());
 }
@@ -72,15 +74,15 @@ fn the_text_is_plain_and_short() {
 #[test]
 fn a_table_can_be_continued() {
     let names = ["stiffness_total", "length_total"];
-    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 7])]), &names).unwrap();
-    writer.append(&row(1, [1.0; 7])).unwrap();
-    assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 7]), row(1, [1.0; 7])]));
+    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 8])]), &names).unwrap();
+    writer.append(&row(1, [1.0; 8])).unwrap();
+    assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 8]), row(1, [1.0; 8])]));
 }
 
 /// A run that was killed in the middle of a row must not lend the plot a number cut short.
 #[test]
 fn an_unfinished_line_is_left_out_and_reported() {
-    let mut text = written(&[row(0, [1.0; 7]), row(1, [12.5; 7])]);
+    let mut text = written(&[row(0, [1.0; 8]), row(1, [12.5; 8])]);
     text.truncate(text.len() - 2);
     let table = read(text).unwrap();
     assert_eq!((table.rows.len(), table.unfinished_line), (1, Some(3)));
@@ -88,21 +90,21 @@ fn an_unfinished_line_is_left_out_and_reported() {
 
 #[test]
 fn line_ends_and_marks_of_other_programs_are_read() {
-    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3,4,5\r\n", FIXED_COLUMNS.join(","))).unwrap();
+    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3,4,5,6\r\n", FIXED_COLUMNS.join(","))).unwrap();
     assert_eq!((table.rows.len(), table.rows[0].entropy), (1, 5.0));
 }
 
 #[test]
 fn faults_are_named_with_their_line() {
-    let good = "0,4000,1,2,3,4,5,6\n";
-    assert_eq!(message(&format!("{good}1,8000,1,2\n")), "line 3 has 4 fields, the header has 8");
-    assert_eq!(message("0,4000,1,2,3,4,5,6,7\n"), "line 2 has 9 fields, the header has 8");
-    assert_eq!(message("\n"), "line 2 has 1 fields, the header has 8");
-    assert_eq!(message("0,-1,1,2,3,4,5,6\n"), "line 2: `-1` in column `env_steps` is not a whole number from 0");
-    assert_eq!(message("0,4000,1,fast,3,4,5,6\n"), "line 2: `fast` in column `discounted_return` is not a number");
-    assert_eq!(message("0,4000,1,2,3,4,5,\n"), "line 2: `` in column `stiffness_total` is not a number");
+    let good = "0,4000,1,2,3,4,5,6,7\n";
+    assert_eq!(message(&format!("{good}1,8000,1,2\n")), "line 3 has 4 fields, the header has 9");
+    assert_eq!(message("0,4000,1,2,3,4,5,6,7,8\n"), "line 2 has 10 fields, the header has 9");
+    assert_eq!(message("\n"), "line 2 has 1 fields, the header has 9");
+    assert_eq!(message("0,-1,1,2,3,4,5,6,7\n"), "line 2: `-1` in column `env_steps` is not a whole number from 0");
+    assert_eq!(message("0,4000,1,fast,3,4,5,6,7\n"), "line 2: `fast` in column `discounted_return` is not a number");
+    assert_eq!(message("0,4000,1,2,3,4,5,6,\n"), "line 2: `` in column `stiffness_total` is not a number");
     assert_eq!(
-        message(&format!("{good}1,3999,1,2,3,4,5,6\n")),
+        message(&format!("{good}1,3999,1,2,3,4,5,6,7\n")),
         "line 3: env_steps falls from 4000 to 3999; a table holds one run, in order"
     );
 }
@@ -116,7 +118,7 @@ fn what_is_no_metrics_table_is_refused() {
     assert!(matches!(of(&[0xff, 0xfe, b'\n']), MetricsError::Text { line: 1 }));
     assert!(matches!(of(&vec![b'x'; 10 * LONGEST_LINE]), MetricsError::Long { line: 1 }));
     // Escapes must not reach a terminal, nor a whole file an error message.
-    let escape = message(&format!("0,4000,\u{1b}[31m{},2,3,4,5,6\n", "x".repeat(4000)));
+    let escape = message(&format!("0,4000,\u{1b}[31m{},2,3,4,5,6,7\n", "x".repeat(4000)));
     assert!(!escape.contains('\u{1b}') && escape.len() < 200, "{escape}");
 }
 
@@ -131,7 +133,7 @@ fn rows_without_end_are_refused() {
     struct Rows(u64);
     impl std::io::Read for Rows {
         fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-            let row = b"0,0,0,0,0,0,0\n";
+            let row = b"0,0,0,0,0,0,0,0\n";
             let count = buffer.len().min(1 << 16) / row.len();
             assert!(count > 0 && self.0 < 10_000_000, "the reader does not stop");
             for place in buffer.chunks_exact_mut(row.len()).take(count) {
@@ -161,6 +163,6 @@ fn names_that_break_a_header_are_refused() {
 #[test]
 fn a_row_of_another_table_is_not_written() {
     let mut writer = MetricsWriter::new(Vec::new(), &["stiffness_total"]).unwrap();
-    assert!(matches!(writer.append(&row(0, [0.0; 7])), Err(MetricsError::Fields { found: 9, expected: 8, .. })));
+    assert!(matches!(writer.append(&row(0, [0.0; 8])), Err(MetricsError::Fields { found: 10, expected: 9, .. })));
     assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), header());
 }

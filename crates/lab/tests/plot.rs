@@ -225,6 +225,7 @@ fn a_table_becomes_a_curve() {
         undiscounted_return: 0.0,
         kl: 0.0,
         entropy: 0.0,
+        step_fraction: 0.0,
         design_totals: vec![5.0, i as f64],
     };
     let design_totals = vec!["a_total".to_owned(), "b_total".to_owned()];

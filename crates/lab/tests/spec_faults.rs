@@ -33,6 +33,7 @@ macro_rules! wrong_files {
 wrong_files! {
     misspelt_key: "[ppo]\nclip_raito = 0.2\n";
     key_of_another_table: "[train]\nclip_ratio = 0.2\n";
+    rows_of_the_curvature: "[trpo]\nfisher_rows = 1.5\nmax_kl = 0\n[baseline]\nminibatch_rows = 5000\n";
     near_a_key_of_another_table: "[train]\nlearning_rat = 0.2\n";
     key_nobody_knows: "[design]\ntemperature = 3\n";
     misspelt_table: "[contoller]\nhidden = [8]\n";

@@ -33,6 +33,19 @@ fn the_resolved_file_says_everything() {
     insta::assert_snapshot!("resolved_reach_fixed", reach.to_toml().unwrap());
 }
 
+/// Another learner is not another problem: what the experiment says of discounting holds for it too.
+#[test]
+fn trpo_discounts_as_ppo_does_unless_it_is_told_otherwise() {
+    let spec = |settings: &[&str]| {
+        let layers = load("pendulum").unwrap().with_assignment("learner.algorithm = trpo");
+        resolve(settings.iter().fold(layers, |layers, s| layers.with_assignment(s)), None).unwrap()
+    };
+    let plain = spec(&[]);
+    assert_eq!((plain.discount(), plain.trpo.gae_lambda, plain.baseline.minibatch_rows), (0.9, 0.95, 100));
+    let told = spec(&["trpo.discount = 0.95", "baseline.minibatch_rows = 50"]);
+    assert_eq!((told.discount(), told.ppo.discount, told.baseline.minibatch_rows), (0.95, 0.9, 50));
+}
+
 #[test]
 fn later_layers_win() {
     let text = "name = 'a'\nmethod = 'minimal'\ntask = { problem = 'stiffness', segments = 3 }\n\

@@ -124,6 +124,7 @@ fn a_training_can_be_read_back() {
             ("train/discounted_return", row.discounted_return),
             ("train/kl", row.kl),
             ("train/entropy", row.entropy),
+            ("train/step_fraction", row.step_fraction),
             ("design/gear", row.design_totals[0]),
         ];
         expected.push((row.env_steps, train.to_vec()));
@@ -158,6 +159,7 @@ fn what_is_not_finite_is_left_out() {
         undiscounted_return: -1.5,
         kl: f64::INFINITY,
         entropy: 0.5,
+        step_fraction: f64::NAN,
         design_totals: vec![f64::NEG_INFINITY],
     };
     board.on(Event::Iteration(&row)).unwrap();

@@ -210,6 +210,34 @@ fn a_fixed_design_is_what_it_is_given_to_be() {
     assert_eq!(design("mass-spring", &[("design.initial", "1.96 N/m")]), [1.96; 10]);
 }
 
+/// TRPO is a learner like another: for every method that follows a gradient, alone or inside of a search.
+#[test]
+fn trpo_trains_by_every_method() {
+    for (method, steps) in
+        [("hwasp", "2400"), ("minimal", "2400"), ("fixed", "2400"), ("cmaes-rl", "12000"), ("ars-rl", "12000")]
+    {
+        let settings = [
+            ("learner.algorithm", "trpo"),
+            ("trpo.fisher_rows", "200"),
+            ("search.inner_env_steps", "1200"),
+            ("train.env_steps", steps),
+        ];
+        let assembly = assembly("reach", Some(method), &settings);
+        let run = |executor| {
+            let mut recorder = Recorder::default();
+            let trained = train(&assembly, executor, &mut recorder, &AtomicBool::new(false)).unwrap();
+            (trained.params, recorder.rows)
+        };
+        let (params, rows) = run(&Serial);
+        assert_ne!(params, assembly.init(), "{method}");
+        assert_eq!(params, run(&Threads::new(2).unwrap()).0, "{method}");
+        if !method.ends_with("-rl") {
+            assert!(rows.iter().all(|row| row.kl <= 0.01 && row.step_fraction <= 1.0), "{method}: {rows:?}");
+            assert!(rows.iter().any(|row| row.kl > 0.0 && row.step_fraction > 0.0), "{method}: {rows:?}");
+        }
+    }
+}
+
 /// A bar low enough for any seed, and out of reach for a learner that does nothing: the first design has gear 1.27.
 #[test]
 fn reach_is_learned() {

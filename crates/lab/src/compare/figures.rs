@@ -183,6 +183,7 @@ mod tests {
             undiscounted_return: 0.0,
             kl: 0.0,
             entropy: 0.0,
+            step_fraction: 0.0,
             design_totals: vec![],
         };
         MetricsTable { rows: rows.iter().enumerate().map(row).collect(), ..MetricsTable::default() }

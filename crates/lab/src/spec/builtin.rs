@@ -22,6 +22,7 @@ pub const EXPERIMENTS: &[(&str, &str)] = embedded![
     "bar-length-50",
     "reach",
     "pendulum",
+    "pendulum-trpo",
     "z-grasp",
     "paper/mass-spring",
     "paper/mass-spring-50",

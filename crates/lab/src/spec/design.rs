@@ -72,7 +72,7 @@ pub struct PlacedRange {
 /// | `placements` | none | where some of them sit: `{ "stiffness[0]" = "action", "stiffness[3..5]" = "fixed" }` (3 and 4), or a list of one place each | |
 /// | `initial` | "logit" | `logit`, `middle`, a quantity, or one for each group, `{ thumb_distal_radius = "6 mm" }`; groups left out begin in the middle | inside of the parameter's limits |
 /// | `logit_half_width` | 5.0 | half width of the uniform start before the squash | 0 to 20 |
-/// | `learning_rate_scale` | 1.0 | times the policy's learning rate | 0 to 1000 |
+/// | `learning_rate_scale` | 1.0 | times the policy's learning rate (PPO) | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignSpec {
     /// Where the parameters sit, unless `placements` says otherwise.

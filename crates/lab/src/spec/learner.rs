@@ -1,4 +1,4 @@
-//! `[learner]`, `[ppo]` and `[baseline]`: what improves the policy.
+//! `[learner]`, `[ppo]`, `[trpo]` and `[baseline]`: what improves the policy.
 
 use serde::Serialize;
 
@@ -12,6 +12,8 @@ named! {
     pub enum Algorithm {
         /// Proximal policy optimisation.
         Ppo = "ppo",
+        /// Trust region policy optimisation.
+        Trpo = "trpo",
     }
 }
 
@@ -25,7 +27,11 @@ named! {
     }
 }
 
-/// `[learner]`: `algorithm` ("ppo").
+/// `[learner]`.
+///
+/// | key | default | meaning | limits |
+/// |---|---|---|---|
+/// | `algorithm` | "ppo" | what improves the policy | `ppo` or `trpo` |
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LearnerSpec {
     /// What improves the policy.
@@ -79,6 +85,47 @@ pub struct PpoSpec {
     pub bootstrap_truncated: bool,
 }
 
+/// `[trpo]` (Schulman et al. 2015).
+///
+/// | key | default | meaning | limits |
+/// |---|---|---|---|
+/// | `discount` | that of `[ppo]` | gamma | 0 to 1 |
+/// | `gae_lambda` | that of `[ppo]` | lambda | 0 to 1 |
+/// | `max_kl` | 0.01 | the most mean KL divergence of an update, nats | 1e-9 to 10 |
+/// | `fisher_rows` | 1.0 | rows that the curvature is taken of: a share of the batch, or above 1 how many | 1e-6 to 1e7 |
+/// | `cg_iterations` | 10 | most steps of conjugate gradients | 1 to 1000 |
+/// | `cg_tolerance` | 1e-10 | they end where the squared norm of the residual is below | 0 to 1 |
+/// | `damping` | 1e-5 | added to the diagonal of the curvature | 0 to 1e3 |
+/// | `backtrack_ratio` | 0.8 | what a step that does not hold is shortened by | 0.01 to 0.99 |
+/// | `backtracks` | 15 | steps tried, the full one among them | 1 to 100 |
+/// | `normalize_advantages` | that of `[ppo]` | centred and scaled per batch | |
+/// | `bootstrap_truncated` | that of `[ppo]` | whether a cut episode has a future | |
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrpoSpec {
+    /// Discount, gamma.
+    pub discount: f64,
+    /// Lambda of generalised advantage estimation.
+    pub gae_lambda: f64,
+    /// The most mean KL divergence of an update, nats.
+    pub max_kl: f64,
+    /// Rows that the curvature is taken of: up to 1 a share of the batch, above it how many.
+    pub fisher_rows: f64,
+    /// Most steps of conjugate gradients.
+    pub cg_iterations: usize,
+    /// Conjugate gradients end where the squared norm of the residual is below this.
+    pub cg_tolerance: f64,
+    /// Added to the diagonal of the curvature.
+    pub damping: f64,
+    /// What a step that does not hold is shortened by.
+    pub backtrack_ratio: f64,
+    /// Steps tried, the full one among them.
+    pub backtracks: usize,
+    /// Whether advantages are centred and scaled per batch.
+    pub normalize_advantages: bool,
+    /// Whether the value of the last state stands for the future of a truncated episode.
+    pub bootstrap_truncated: bool,
+}
+
 /// `[baseline]`.
 ///
 /// | key | default | meaning | limits |
@@ -86,7 +133,8 @@ pub struct PpoSpec {
 /// | `kind` | "mlp" | `mlp` or `linear` | |
 /// | `hidden` | [32, 32] | widths of the network's hidden layers | up to 16 of 1 to 4096 |
 /// | `learning_rate` | 1e-3 | Adam's | 1e-9 to 1 |
-/// | `epochs` | 4 | passes over a batch, in PPO's minibatches | 1 to 1000 |
+/// | `epochs` | 4 | passes over a batch | 1 to 1000 |
+/// | `minibatch_rows` | that of `[ppo]` | rows of a minibatch of the network; 0: the whole batch | 0 to the rows of an iteration |
 /// | `privileged` | false | whether it also sees the law's state, which the controller does not | |
 /// | `ridge` | 1e-5 | regularisation of the linear one | 0 to 1e6 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -99,6 +147,8 @@ pub struct BaselineSpec {
     pub learning_rate: f64,
     /// Passes over a batch.
     pub epochs: usize,
+    /// Rows of a minibatch; 0 for the whole batch.
+    pub minibatch_rows: usize,
     /// Whether it also sees the law's state.
     pub privileged: bool,
     /// Regularisation of the linear one.
@@ -132,10 +182,40 @@ impl PpoSpec {
             normalize_advantages: s.flag("normalize_advantages", true),
             bootstrap_truncated: s.flag("bootstrap_truncated", true),
         };
-        let sound = s.reader.sound(&["train.episodes_per_iteration", "train.episode_steps", "task.horizon"]);
-        if spec.minibatch_rows > rows && sound {
-            let message = format!("ppo.minibatch_rows = {} is more than the {}", spec.minibatch_rows, train.portion());
-            s.clash("minibatch_rows", message, "0 takes the whole batch at once");
+        check_minibatch(&mut s, "ppo", spec.minibatch_rows, train);
+        s.finish();
+        spec
+    }
+}
+
+/// Refuses minibatches that an iteration does not fill.
+fn check_minibatch(s: &mut Section<'_>, table: &str, minibatch_rows: usize, train: &TrainSpec) {
+    let sound = s.reader.sound(&["train.episodes_per_iteration", "train.episode_steps", "task.horizon"]);
+    if minibatch_rows > train.rows() && sound {
+        let message = format!("{table}.minibatch_rows = {minibatch_rows} is more than the {}", train.portion());
+        s.clash("minibatch_rows", message, "0 takes the whole batch at once");
+    }
+}
+
+impl TrpoSpec {
+    /// Reads the table; what it does not say of advantages is as PPO has it.
+    pub(super) fn read(mut s: Section<'_>, ppo: &PpoSpec) -> Self {
+        let spec = Self {
+            discount: s.number("discount", ppo.discount, 0.0..=1.0),
+            gae_lambda: s.number("gae_lambda", ppo.gae_lambda, 0.0..=1.0),
+            max_kl: s.number("max_kl", 0.01, 1e-9..=10.0),
+            fisher_rows: s.number("fisher_rows", 1.0, 1e-6..=MOST_ROWS as f64),
+            cg_iterations: s.count("cg_iterations", 10, 1..=1000),
+            cg_tolerance: s.number("cg_tolerance", 1e-10, 0.0..=1.0),
+            damping: s.number("damping", 1e-5, 0.0..=1e3),
+            backtrack_ratio: s.number("backtrack_ratio", 0.8, 0.01..=0.99),
+            backtracks: s.count("backtracks", 15, 1..=100),
+            normalize_advantages: s.flag("normalize_advantages", ppo.normalize_advantages),
+            bootstrap_truncated: s.flag("bootstrap_truncated", ppo.bootstrap_truncated),
+        };
+        if spec.fisher_rows > 1.0 && spec.fisher_rows.fract() != 0.0 && s.reader.sound(&["trpo.fisher_rows"]) {
+            let message = format!("trpo.fisher_rows = {} is neither a share nor a number of rows", spec.fisher_rows);
+            s.clash("fisher_rows", message, "up to 1 it is a share of the batch, above it a whole number of rows");
         }
         s.finish();
         spec
@@ -143,15 +223,21 @@ impl PpoSpec {
 }
 
 impl BaselineSpec {
-    pub(super) fn read(mut s: Section<'_>) -> Self {
+    /// Reads the table for iterations of so many rows.
+    pub(super) fn read(mut s: Section<'_>, ppo: &PpoSpec, train: &TrainSpec) -> Self {
         let spec = Self {
             kind: s.choice("kind", BaselineKind::ALL).unwrap_or(BaselineKind::Mlp),
             hidden: s.counts("hidden", &[32, 32], MOST_LAYERS, &(1..=WIDEST_LAYER)),
             learning_rate: s.number("learning_rate", 1e-3, 1e-9..=1.0),
             epochs: s.count("epochs", 4, 1..=1000),
+            minibatch_rows: s.count("minibatch_rows", ppo.minibatch_rows, 0..=MOST_ROWS),
             privileged: s.flag("privileged", false),
             ridge: s.number("ridge", 1e-5, 0.0..=1e6),
         };
+        // What it takes over from PPO is judged there.
+        if s.origin("minibatch_rows").is_some() {
+            check_minibatch(&mut s, "baseline", spec.minibatch_rows, train);
+        }
         s.finish();
         spec
     }

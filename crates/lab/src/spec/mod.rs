@@ -42,7 +42,7 @@ pub use design::{DesignSpec, InitialSpec, InitialValue, Place, PlacedRange};
 pub use fault::{Excerpt, Fault, SpecErrors};
 pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec};
 pub use layers::{LONGEST_FILE, Layers};
-pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec};
+pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec, TrpoSpec};
 pub use noise::{EffortSpec, NoiseSpec};
 pub use search::{ArsSpec, ArsVariant, CmaesSpec, Score, SearchSpec};
 pub use task::{
@@ -117,6 +117,8 @@ pub struct Spec {
     pub learner: LearnerSpec,
     /// Settings of PPO.
     pub ppo: PpoSpec,
+    /// Settings of TRPO.
+    pub trpo: TrpoSpec,
     /// What estimates values.
     pub baseline: BaselineSpec,
     /// How the candidates of a search are scored.
@@ -130,6 +132,14 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// The discount that returns are told and candidates scored by: the learner's.
+    pub fn discount(&self) -> f64 {
+        match self.learner.algorithm {
+            Algorithm::Ppo => self.ppo.discount,
+            Algorithm::Trpo => self.trpo.discount,
+        }
+    }
+
     /// The resolved experiment as a file that gives the same `Spec` again.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
@@ -191,17 +201,30 @@ fn read_spec<'r>(reader: &'r Reader<'r>, table: &'r Table, method: Method) -> Op
                     the command line sets keys of the chosen method: --set ppo.clip_ratio=0.1";
         reader.fault(Some(&node.origin), "methods", "methods cannot be set here".into(), Some(hint.into()));
     }
-    let sections =
-        ["task", "controller", "design", "noise", "learner", "ppo", "baseline", "search", "cmaes", "ars", "train"]
-            .map(|name| reader.section(&mut root, name));
+    let sections = [
+        "task",
+        "controller",
+        "design",
+        "noise",
+        "learner",
+        "ppo",
+        "trpo",
+        "baseline",
+        "search",
+        "cmaes",
+        "ars",
+        "train",
+    ]
+    .map(|name| reader.section(&mut root, name));
     root.finish();
-    let [task, controller, design, noise, learner, ppo, baseline, search, cmaes, ars, train] = sections;
+    let [task, controller, design, noise, learner, ppo, trpo, baseline, search, cmaes, ars, train] = sections;
 
     let learner = LearnerSpec::read(learner);
-    let baseline = BaselineSpec::read(baseline);
     let task = TaskSpec::read(task);
     let train = TrainSpec::read(train, task.as_ref().map_or(MOST_STEPS, |task| task.horizon));
     let ppo = PpoSpec::read(ppo, &train);
+    let trpo = TrpoSpec::read(trpo, &ppo);
+    let baseline = BaselineSpec::read(baseline, &ppo, &train);
     let search = SearchSpec::read(search, &train);
     let cmaes = CmaesSpec::read(cmaes, method);
     let ars = ArsSpec::read(ars, method);
@@ -221,6 +244,7 @@ fn read_spec<'r>(reader: &'r Reader<'r>, table: &'r Table, method: Method) -> Op
         noise,
         learner,
         ppo,
+        trpo,
         baseline,
         search,
         cmaes,

@@ -28,7 +28,7 @@ pub struct EffortSpec {
 /// | `command_final`, `effort_final`, `design_final` | "none" | annealed geometrically to this | as above |
 /// | `anneal` | [0.25, 0.75] | begin and end of annealing, fractions of training | 0 to 1, in order |
 /// | `train` | true | whether the standard deviations are trained | |
-/// | `learning_rate_scale` | 1.0 | times the policy's learning rate | 0 to 1000 |
+/// | `learning_rate_scale` | 1.0 | times the policy's learning rate (PPO) | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NoiseSpec {
     /// Of the motor command, as a fraction of its range.

@@ -145,7 +145,8 @@ impl Environment for Fragile {
 /// Candidates whose episode or whose training fails are counted, charged in full, and passed over.
 #[test]
 fn failing_candidates_rank_last_and_are_charged() {
-    let settings: [(&str, &[(&str, &str)], u64); 4] = [
+    type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], u64);
+    let settings: [Case<'_>; 4] = [
         ("cmaes", &[("cmaes.sigma", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("ars", &[("ars.noise_std", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("cmaes-rl", &[("cmaes.popsize", "5")], 1200),

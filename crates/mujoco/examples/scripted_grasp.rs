@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout)] // a program
 
 use std::error::Error;
+use std::fmt::Write;
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
 use hwasp_mujoco::grasp::{Grasp, GraspSettings, GraspTask, Script, ShapeKind};
@@ -59,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     settings.hand.transmission.tension_limit = limit;
                     let grasp = if native { Grasp::native(settings, &design)? } else { Grasp::new(settings)? };
                     let (successes, mean) = run(&mut grasp.robot(None), &grasp, &design, episodes);
-                    line += &format!(" {:8.0}", 100.0 * successes as f64 / episodes as f64);
+                    write!(line, " {:8.0}", 100.0 * successes as f64 / episodes as f64)?;
                     returns += 0.25 * mean;
                 }
                 println!("{line}  {returns:9.1}");

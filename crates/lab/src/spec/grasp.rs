@@ -63,11 +63,11 @@ pub struct SpanSpec {
 /// | `range` | "large" | limits of the twelve parameters: `large` or `small` | |
 /// | `tension_limit` | "75 N" | the most the three tendons pull together; 163 N is the easy variant | 1 to 1000 N |
 /// | `shapes` | all four | of `sphere`, `box`, `cylinder`, `ellipsoid` | at least one |
-/// | `size` | ["40 mm", "100 mm"] | edges of the object's bounding box | 10 to 200 mm |
-/// | `mass` | ["100 g", "500 g"] | of the object | 0.001 to 10 kg |
-/// | `friction` | [0.5, 1.0] | of the object on hand and floor | 0 to 10 |
-/// | `inertia` | [1e-4, 5e-3] | each principal moment, kg·m²; or "physical", from mass, shape and size | 1e-7 to 1 |
-/// | `height` | ["150 mm", "250 mm"] | of the palm above the object's top at the start | 0 to 400 mm |
+/// | `size` | 40 to 100 mm | edges of the object's bounding box | 10 to 200 mm |
+/// | `mass` | 100 to 500 g | of the object | 0.001 to 10 kg |
+/// | `friction` | 0.5 to 1 | of the object on hand and floor | 0 to 10 |
+/// | `inertia` | 1e-4 to 5e-3 | each principal moment, kg·m²; or "physical", from mass, shape and size | 1e-7 to 1 |
+/// | `height` | 150 to 250 mm | of the palm above the object's top at the start | 0 to 400 mm |
 /// | `offset` | "0 mm" (3d-grasp: "50 mm") | the object's place in x and y, ± | 0 to 100 mm |
 /// | `yaw` | "0 rad" | the object's turn about the vertical, ± | 0 to 4 rad |
 /// | `lying` | 0.0 | share of cylinders that lie on their side | 0 to 1 |

@@ -42,7 +42,7 @@ pub(super) struct Places {
 impl Places {
     pub(super) fn look_up(sim: &Simulation, drive: &Drive) -> Result<Self, UnknownName> {
         let joint = |name: &str| sim.joint(name).map(|address| address.qpos.start);
-        let actuator = |name: &str| sim.actuator(name).map(|id| id.index());
+        let actuator = |name: &str| sim.actuator(name).map(crate::engine::ActuatorId::index);
         let drive_names = match drive {
             Drive::Torques => &names::TORQUE_ACTUATORS[..],
             Drive::Tendons(_) => &names::TENDON_ACTUATORS[..],

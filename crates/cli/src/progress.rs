@@ -12,6 +12,9 @@ use crate::report::{grouped, quantity};
 /// Lines per training where there is no terminal.
 const LINES: u64 = 20;
 
+/// Totals of the design that a line has room for; `metrics.csv` has all.
+const MOST_TOTALS: usize = 3;
+
 /// The message takes what the bar leaves of the line and is cut there: a bar that wraps cannot be redrawn.
 const TEMPLATE: &str = "{percent:>3}% {bar:20.cyan/dim} {wide_msg}";
 
@@ -58,8 +61,13 @@ impl Progress {
     fn iteration(&mut self, row: &MetricsRow) {
         let rate = row.env_steps as f64 / row.wall_s.max(1e-9);
         let totals = self.names.iter().zip(&row.design_totals).zip(&self.units);
-        let design: Vec<String> =
-            totals.map(|((name, total), unit)| format!("{name} {}", quantity(*total, unit))).collect();
+        let mut design: Vec<String> = totals
+            .take(MOST_TOTALS)
+            .map(|((name, total), unit)| format!("{name} {}", quantity(*total, unit)))
+            .collect();
+        if self.names.len() > MOST_TOTALS {
+            design.push("…".to_owned());
+        }
         // What matters most comes first: a narrow terminal shows no more than that.
         let message = format!("return {:.1}  {}  {:.0}k steps/s", row.discounted_return, design.join("  "), rate / 1e3);
         if self.terminal {

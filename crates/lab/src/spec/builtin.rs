@@ -24,6 +24,7 @@ pub const EXPERIMENTS: &[(&str, &str)] = embedded![
     "pendulum",
     "pendulum-trpo",
     "z-grasp",
+    "3d-grasp",
     "paper/mass-spring",
     "paper/mass-spring-50",
     "paper/bar-length",

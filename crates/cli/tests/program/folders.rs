@@ -133,8 +133,8 @@ fn damaged_metrics() {
         ("empty", String::new()),
         ("another table", "a,b\n1,2\n".into()),
         ("a row of two fields", format!("{sound}2,3\n")),
-        ("a word for a number", format!("{header}\n0,many,0,0,0,0,0,0\n")),
-        ("another run's rows", format!("{sound}0,1200,0,0,0,0,0,0\n")),
+        ("a word for a number", format!("{header}\n0,many,0,0,0,0,0,0,0\n")),
+        ("another run's rows", format!("{sound}0,1200,0,0,0,0,0,0,0\n")),
     ] {
         sandbox.write("run/metrics.csv", text);
         write!(transcript, "# {what}\n{}", sandbox.refused(&["plot run"])).unwrap();

@@ -58,10 +58,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
     let threads = arguments.next().transpose()?.unwrap_or(2);
     let iterations = arguments.next().transpose()?.unwrap_or(2);
-    let settings = [
-        ("train.env_steps", (20_000 * iterations).to_string()),
-        ("train.evaluation_episodes", "1".to_owned()),
-    ];
+    let settings =
+        [("train.env_steps", (20_000 * iterations).to_string()), ("train.evaluation_episodes", "1".to_owned())];
     let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
     let mut assembly = Assembly::new(&spec::resolve(layers, None)?)?;
     let (whole, nanoseconds) = (Arc::clone(&assembly.problem.training.make), Arc::new(AtomicU64::new(0)));
@@ -93,6 +91,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  the same physics alone         {:8.0} steps/s", steps / physics);
     println!("  share of the time in physics   {:8.1} %", 100.0 * physics / trained.wall_s);
     println!("  controller, law, bookkeeping   {:8.1} %", 100.0 * (sampling - physics).max(0.0) / trained.wall_s);
-    println!("  updates                        {:8.1} %", 100.0 * (trained.wall_s - sampling).max(0.0) / trained.wall_s);
+    println!(
+        "  updates                        {:8.1} %",
+        100.0 * (trained.wall_s - sampling).max(0.0) / trained.wall_s
+    );
     Ok(())
 }

@@ -10,32 +10,13 @@ use std::fmt::Write;
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
 use hwasp_mujoco::grasp::{Grasp, GraspSettings, GraspTask, Script, ShapeKind};
-use hwasp_tasks::hand::{DESIGN_LEN, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
-
-/// Found by a search with this script (spec of the task).
-const SEARCHED: [f64; DESIGN_LEN] =
-    [0.0109, 0.0097, 0.0077, 0.0053, 0.0057, 0.006, 0.009, 0.006, 2.0, 0.36, 2.06, 0.63];
+use hwasp_tasks::hand::{PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 
 /// Successes and mean return of some episodes.
 fn run(robot: &mut Robot<GraspTask>, grasp: &Grasp, design: &[f64], episodes: u64) -> (u64, f64) {
-    let law = grasp.law();
-    let transmission = &grasp.settings().hand.transmission;
-    let most = transmission.spool_radius * transmission.tension_limit;
-    let (mut script, mut state, mut effort) = (Script::default(), [0.0; 7], [0.0; 7]);
     let (mut successes, mut total) = (0, 0.0);
     for episode in 0..episodes {
-        robot.reset(&mut stream(1, Purpose::Check, 0, episode));
-        script.start(robot.plant());
-        loop {
-            let command = script.act(robot.plant(), robot, most);
-            robot.state(&mut state);
-            law.effort(design, &command, &state, &mut effort);
-            let step = robot.step(&effort, &command);
-            total += step.reward;
-            if step.end.is_some() {
-                break;
-            }
-        }
+        total += Script::default().play(robot, grasp, design, &mut stream(1, Purpose::Check, 0, episode)).0;
         successes += u64::from(robot.outcome().is_some_and(|outcome| outcome.success));
     }
     (successes, total / episodes as f64)

@@ -2,18 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_core::{End, Environment, Purpose, Robot, Stream, check_env, stream};
+use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
 use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, GraspTask, Inertia, Script, ShapeKind};
+use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Script, ShapeKind};
 use hwasp_tasks::hand::{
-    DESIGN_LEN, Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE, TendonHand,
+    Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names,
 };
 use rand::RngExt;
-
-/// A design that a search with the script found.
-const SEARCHED: [f64; DESIGN_LEN] =
-    [0.0109, 0.0097, 0.0077, 0.0053, 0.0057, 0.006, 0.009, 0.006, 2.0, 0.36, 2.06, 0.63];
 
 fn rng(episode: u64) -> Stream {
     stream(5, Purpose::Check, 0, episode)
@@ -21,26 +17,6 @@ fn rng(episode: u64) -> Stream {
 
 fn settings(kind: ShapeKind) -> GraspSettings {
     GraspSettings { shapes: vec![kind], ..GraspSettings::default() }
-}
-
-/// Plays one episode of the script; the total reward.
-fn play(robot: &mut Robot<GraspTask>, grasp: &Grasp, design: &[f64], episode: u64) -> f64 {
-    let transmission = &grasp.settings().hand.transmission;
-    let most = transmission.spool_radius * transmission.tension_limit;
-    let (mut script, mut state, mut effort, mut total) = (Script::default(), [0.0; 7], [0.0; 7], 0.0);
-    robot.reset(&mut rng(episode));
-    script.start(robot.plant());
-    loop {
-        let command = script.act(robot.plant(), robot, most);
-        robot.state(&mut state);
-        grasp.law().effort(design, &command, &state, &mut effort);
-        let step = robot.step(&effort, &command);
-        total += step.reward;
-        if step.end.is_some() {
-            assert_eq!(step.end, Some(End::Truncated));
-            return total;
-        }
-    }
 }
 
 fn bare(drive: Drive) -> Simulation {
@@ -217,7 +193,8 @@ fn the_script_grasps_every_shape() {
         settings.hand.transmission.tension_limit = 163.0;
         for grasp in [Grasp::new(settings.clone()).unwrap(), Grasp::native(settings, &SEARCHED).unwrap()] {
             let mut robot = grasp.robot(None);
-            let total = play(&mut robot, &grasp, &SEARCHED, 1);
+            let (total, end) = Script::default().play(&mut robot, &grasp, &SEARCHED, &mut rng(1));
+            assert_eq!(end, End::Truncated);
             let outcome = robot.outcome().unwrap();
             assert_eq!((outcome.kind, outcome.success), (kind.name(), true), "return {total}");
             assert!(total > 500.0 && robot.plant().clearance() > 0.1, "{kind:?}: {total}");

@@ -13,9 +13,8 @@ use crate::spec::ObjectKind;
 use crate::spec::{GraspProblem, GroupSpec, InitialSpec, InterfaceKind, MassSpringSpec, Problem, RewardKind, Spec};
 
 pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
-    let starts = initial(spec);
-    // Problems with one group of parameters.
-    let initial = starts[0];
+    // Problems with one group of parameters; the hand has more.
+    let initial = initial(spec)[0];
     match &spec.task.problem {
         Problem::Stiffness(p) => {
             let settings = MassSpringSettings {
@@ -55,20 +54,19 @@ pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
             let world = World { law: pendulum.law(), make: Arc::new(pendulum) };
             Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
         }
-        Problem::ZGrasp(p) => grasp(p, false, spec, &starts),
-        Problem::SpatialGrasp(p) => grasp(p, true, spec, &starts),
+        Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => grasp(p, spec),
     }
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn grasp(_: &GraspProblem, _: bool, spec: &Spec, _: &[Initial]) -> Result<Problems, AssembleError> {
+fn grasp(_: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
     Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
 }
 
 #[cfg(feature = "mujoco")]
-fn grasp(p: &GraspProblem, spatial: bool, spec: &Spec, starts: &[Initial]) -> Result<Problems, AssembleError> {
-    let grasp = hwasp_mujoco::grasp::Grasp::new(grasp_settings(p, spatial, spec, starts))?;
-    let optimum = vec![None; starts.len()];
+fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
+    let grasp = hwasp_mujoco::grasp::Grasp::new(grasp_settings(p, spec))?;
+    let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
     let world = World { law: grasp.law(), make: grasp.shared() };
     Ok(Problems { training: world.clone(), deployment: world, optimum })
 }
@@ -82,37 +80,34 @@ impl Assembly {
         let (Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings)) = &spec.task.problem else {
             return Err(AssembleError::NoNative { problem });
         };
-        let spatial = matches!(spec.task.problem, Problem::SpatialGrasp(_));
-        native(settings, spatial, spec, design)
+        native(settings, spec, design)
     }
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn native(_: &GraspProblem, _: bool, spec: &Spec, _: &[f64]) -> Result<World, AssembleError> {
+fn native(_: &GraspProblem, spec: &Spec, _: &[f64]) -> Result<World, AssembleError> {
     Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
 }
 
 #[cfg(feature = "mujoco")]
-fn native(p: &GraspProblem, spatial: bool, spec: &Spec, design: &[f64]) -> Result<World, AssembleError> {
-    let settings = grasp_settings(p, spatial, spec, &initial(spec));
-    let grasp = hwasp_mujoco::grasp::Grasp::native(settings, &std::array::from_fn(|i| design[i]))?;
+fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, AssembleError> {
+    let grasp = hwasp_mujoco::grasp::Grasp::native(grasp_settings(p, spec), &std::array::from_fn(|i| design[i]))?;
     Ok(World { law: grasp.law(), make: grasp.shared() })
 }
 
 #[cfg(feature = "mujoco")]
-fn grasp_settings(
-    p: &GraspProblem,
-    spatial: bool,
-    spec: &Spec,
-    starts: &[Initial],
-) -> hwasp_mujoco::grasp::GraspSettings {
+fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
     use hwasp_mujoco::grasp::{GraspSettings, Inertia, ShapeKind};
     use hwasp_tasks::hand::{HandDescription, PalmMotion};
 
+    let starts = initial(spec);
     let mut hand = HandDescription::default();
     hand.transmission.tension_limit = p.tension_limit;
     GraspSettings {
-        palm: if spatial { PalmMotion::Spatial } else { PalmMotion::Vertical },
+        palm: match spec.task.problem {
+            Problem::SpatialGrasp(_) => PalmMotion::Spatial,
+            _ => PalmMotion::Vertical,
+        },
         hand,
         range: p.range.into(),
         initial: std::array::from_fn(|i| starts[i]),

@@ -56,20 +56,14 @@ impl Object {
                     break moments;
                 }
             },
-            Inertia::Physical => physical_inertia(kind, size, mass),
+            Inertia::Physical => shape(kind, size).inertia(mass),
         };
         Self { kind, size, mass, inertia, friction, place, yaw, lying }
     }
 
     /// As the engine knows it.
     pub fn shape(&self) -> Shape {
-        let half = self.size.map(|edge| 0.5 * edge);
-        match self.kind {
-            ShapeKind::Sphere => Shape::Sphere { radius: half[0] },
-            ShapeKind::Box => Shape::Box { half },
-            ShapeKind::Cylinder => Shape::Cylinder { radius: half[0], half_length: half[2] },
-            ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half },
-        }
+        shape(self.kind, self.size)
     }
 
     /// Its bounding box as it lies at the start, m: what the controller is told.
@@ -100,15 +94,15 @@ impl Object {
     }
 }
 
-/// Principal moments of a homogeneous body, kg·m².
-fn physical_inertia(kind: ShapeKind, size: [f64; 3], mass: f64) -> [f64; 3] {
-    let [x, y, z] = size.map(|edge| 0.25 * edge * edge); // half edges, squared
-    let share = match kind {
-        ShapeKind::Sphere | ShapeKind::Ellipsoid => 0.2,
-        ShapeKind::Box => 1.0 / 3.0,
-        ShapeKind::Cylinder => return [mass * (x / 4.0 + z / 3.0), mass * (x / 4.0 + z / 3.0), mass * x / 2.0],
-    };
-    [mass * share * (y + z), mass * share * (x + z), mass * share * (x + y)]
+/// What the engine takes for a shape with this bounding box.
+fn shape(kind: ShapeKind, size: [f64; 3]) -> Shape {
+    let half = size.map(|edge| 0.5 * edge);
+    match kind {
+        ShapeKind::Sphere => Shape::Sphere { radius: half[0] },
+        ShapeKind::Box => Shape::Box { half },
+        ShapeKind::Cylinder => Shape::Cylinder { radius: half[0], half_length: half[2] },
+        ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half },
+    }
 }
 
 /// The third row of the rotation that a unit quaternion (w, x, y, z) stands for: the world's vertical in the body's frame.
@@ -145,13 +139,13 @@ mod tests {
         let near =
             |a: [f64; 3], b: [f64; 3]| assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12), "{a:?} {b:?}");
         // 2/5·m·r², m/12·(b² + c²), m/12·(3r² + h²) and m·r²/2.
-        near(physical_inertia(ShapeKind::Sphere, [0.1; 3], 0.5), [0.4 * 0.5 * 0.0025; 3]);
+        near(shape(ShapeKind::Sphere, [0.1; 3]).inertia(0.5), [0.4 * 0.5 * 0.0025; 3]);
         let [a, b, c] = [0.04, 0.06, 0.1];
         near(
-            physical_inertia(ShapeKind::Box, [a, b, c], 1.2),
+            shape(ShapeKind::Box, [a, b, c]).inertia(1.2),
             [0.1 * (b * b + c * c), 0.1 * (a * a + c * c), 0.1 * (a * a + b * b)],
         );
         let across = 0.1 * (3.0 * 0.02 * 0.02 + 0.1 * 0.1);
-        near(physical_inertia(ShapeKind::Cylinder, [0.04, 0.04, 0.1], 1.2), [across, across, 0.6 * 0.02 * 0.02]);
+        near(shape(ShapeKind::Cylinder, [0.04, 0.04, 0.1]).inertia(1.2), [across, across, 0.6 * 0.02 * 0.02]);
     }
 }

@@ -1,8 +1,9 @@
 //! A controller by hand: down, wind, lift. It tells what a design can do before anything is learned.
 
-use hwasp_core::Environment;
+use hwasp_core::{End, Environment, Robot, Stream};
 
 use super::plant::GraspPlant;
+use super::{Grasp, GraspTask};
 
 /// How deep the palm goes and when it lifts. Defaults found by experiment.
 #[derive(Clone, Debug)]
@@ -39,6 +40,32 @@ impl Default for Script {
 }
 
 impl Script {
+    /// Plays one episode of `grasp` on the hand of this `design` (SI); returns the sum of its rewards and how it ended.
+    /// The outcome is the robot's.
+    pub fn play(
+        &mut self,
+        robot: &mut Robot<GraspTask>,
+        grasp: &Grasp,
+        design: &[f64],
+        rng: &mut Stream,
+    ) -> (f64, End) {
+        let (law, transmission) = (grasp.law(), &grasp.settings().hand.transmission);
+        let most = transmission.spool_radius * transmission.tension_limit;
+        let (mut state, mut effort, mut total) = ([0.0; 7], [0.0; 7], 0.0);
+        robot.reset(rng);
+        self.start(robot.plant());
+        loop {
+            let command = self.act(robot.plant(), robot, most);
+            robot.state(&mut state);
+            law.effort(design, &command, &state, &mut effort);
+            let step = robot.step(&effort, &command);
+            total += step.reward;
+            if let Some(end) = step.end {
+                return (total, end);
+            }
+        }
+    }
+
     /// Starts an episode on a plant that was just reset.
     pub fn start(&mut self, plant: &GraspPlant) {
         (self.target, self.wound, self.lifting) = (plant.palm()[2], 0, false);

@@ -49,5 +49,5 @@ pub use description::{
 pub use error::HandError;
 pub use law::{PalmMotion, TendonHand, TendonHandSettings};
 pub use mjcf::{Drive, MjcfOptions, mjcf};
-pub use space::{DESIGN_LEN, HandParameter, HandRange, PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
+pub use space::{DESIGN_LEN, HandParameter, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band};

@@ -19,6 +19,10 @@ pub const PAPER_MINIMAL: [f64; DESIGN_LEN] =
 pub const SMALL_CENTRE: [f64; DESIGN_LEN] =
     [0.010, 0.006, 0.005, 0.003, 0.006, 0.006, 0.006, 0.006, 2.0, 1.75, 2.0, 1.75];
 
+/// A design that a search with a controller by hand found at a tension limit of 75 N: what such a hand can do.
+pub const SEARCHED: [f64; DESIGN_LEN] =
+    [0.0109, 0.0097, 0.0077, 0.0053, 0.0057, 0.006, 0.009, 0.006, 2.0, 0.36, 2.06, 0.63];
+
 /// Limits of radius (m), stiffness (N·m/rad) and preload (rad) in the large range. Our choice: what fits into a finger of
 /// 24 mm, and springs from barely holding a finger open to needing most of the motor.
 const LARGE: [(f64, f64); 3] = [(0.002, 0.012), (0.002, 0.012), (0.0, 4.0)];

@@ -38,6 +38,8 @@ pub struct Trpo<P: Policy> {
     params: Vec<f32>,
     baseline: Baseline,
     seed: u64,
+    /// The unit of each parameter in the equations of a step.
+    unit: Vec<f64>,
     /// Updates so far that took no step.
     rejected: u64,
     /// Working memory.
@@ -52,6 +54,10 @@ impl<P: Policy> Trpo<P> {
     /// Starts from `params`. `seed` names the streams of the curvature's rows and of the baseline.
     pub fn new(settings: &TrpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
         let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
+        let mut unit = vec![1.0; params.len()];
+        for group in policy.groups().iter().filter(|group| group.name == "design") {
+            unit[group.range.clone()].fill(settings.trpo.design_scale);
+        }
         Self {
             config: settings.trpo.clone(),
             passes: Passes::new(Arc::clone(&policy)),
@@ -63,6 +69,7 @@ impl<P: Policy> Trpo<P> {
             params,
             baseline,
             seed,
+            unit,
             rejected: 0,
         }
     }
@@ -89,21 +96,28 @@ impl<P: Policy> Trpo<P> {
         if !(start.is_finite() && norm.is_finite()) {
             return Err(not_finite("the policy gradient"));
         }
-        let fisher = Fisher::new(&self.passes, curvature, &self.params, progress, self.config.damping);
+        let fisher = Fisher::new(&self.passes, curvature, &self.params, progress);
+        // In units of the parameters: gradient D·g, curvature D·H·D, and the way back D·x.
+        let scaled = |v: &[f64]| v.iter().zip(&self.unit).map(|(v, unit)| v * unit).collect::<Vec<_>>();
+        let gradient = scaled(&self.gradient);
         let solution =
-            conjugate_gradient(&self.gradient, self.config.cg_iterations, self.config.cg_tolerance, |v, product| {
-                fisher.product(executor, v, product);
+            conjugate_gradient(&gradient, self.config.cg_iterations, self.config.cg_tolerance, |v, product| {
+                fisher.product(executor, &scaled(v), product);
+                for ((to, unit), v) in product.iter_mut().zip(&self.unit).zip(v) {
+                    *to = *to * unit + self.config.damping * v;
+                }
             });
         // xᵀHx with Hx = g - r.
-        let terms = self.gradient.iter().zip(&solution.residual).zip(&solution.x);
+        let terms = gradient.iter().zip(&solution.residual).zip(&solution.x);
         let curved: f64 = terms.map(|((g, r), x)| x * (g - r)).sum();
         let length = (2.0 * self.config.max_kl / (curved + LEAST_CURVATURE)).sqrt();
         if !length.is_finite() || solution.x.iter().any(|x| !x.is_finite()) {
             return Err(not_finite("the step"));
         }
+        let direction = scaled(&solution.x);
         let (params, candidate, passes, batch) = (&self.params, &mut self.candidate, &self.passes, &self.batch);
         let found = backtrack(start, &self.config, |fraction| {
-            for ((to, from), x) in candidate.iter_mut().zip(params).zip(&solution.x) {
+            for ((to, from), x) in candidate.iter_mut().zip(params).zip(&direction) {
                 *to = (f64::from(*from) - fraction * length * x) as f32;
             }
             passes.evaluate(executor, batch, (params, candidate), progress)

@@ -15,7 +15,8 @@ use crate::gae::AdvantageConfig;
 /// | `max_kl` | 0.01 | δ, the most mean KL divergence of an update |
 /// | `cg_iterations` | 10 | most steps of conjugate gradients |
 /// | `cg_tolerance` | 1e-10 | they end where the squared norm of what is left is below |
-/// | `damping` | 1e-5 | added to the diagonal of the curvature |
+/// | `damping` | 1e-5 | added to the diagonal of the curvature, in units of the parameters |
+/// | `design_scale` | 1.0 | the unit of the design's stand-ins in the equations of a step |
 /// | `fisher_rows` | all | rows that the curvature is taken of |
 /// | `backtrack_ratio` | 0.8 | a step that does not hold is shortened by this |
 /// | `backtracks` | 15 | steps tried, the full one among them |
@@ -29,8 +30,13 @@ pub struct TrpoConfig {
     pub cg_iterations: usize,
     /// Conjugate gradients end where the squared norm of the residual is below this.
     pub cg_tolerance: f64,
-    /// Added to the diagonal of the curvature.
+    /// Added to the diagonal of the curvature, in units of the parameters.
     pub damping: f64,
+    /// The unit of the design's stand-ins in the equations of a step; that of all other parameters is 1. The solution of
+    /// H·x = g does not depend on units, but damping does, and so does what few steps of conjugate gradients find of it: in a
+    /// larger unit the design goes further for the same divergence. The paper scales its stiffnesses (appendix B) to the
+    /// same end.
+    pub design_scale: f64,
     /// Rows that the curvature is taken of: each costs a pass forwards and backwards per step of conjugate gradients.
     pub fisher_rows: FisherRows,
     /// A step that does not hold is shortened by this.
@@ -47,6 +53,7 @@ impl Default for TrpoConfig {
             cg_iterations: 10,
             cg_tolerance: 1e-10,
             damping: 1e-5,
+            design_scale: 1.0,
             fisher_rows: FisherRows::Fraction(1.0),
             backtrack_ratio: 0.8,
             backtracks: 15,

@@ -16,26 +16,19 @@ pub(super) struct Fisher<'a, P: Policy> {
     params: &'a [f32],
     /// 1/(N·σ²) of each action component.
     weight: Vec<f32>,
-    damping: f64,
 }
 
 impl<'a, P: Policy> Fisher<'a, P> {
     /// At `params`, over these rows.
-    pub(super) fn new(
-        passes: &'a Passes<P>,
-        rows: &'a Minibatch,
-        params: &'a [f32],
-        progress: f64,
-        damping: f64,
-    ) -> Self {
+    pub(super) fn new(passes: &'a Passes<P>, rows: &'a Minibatch, params: &'a [f32], progress: f64) -> Self {
         let mut log_std = vec![0.0; passes.policy().action_dim()];
         passes.policy().log_std(params, progress, &mut log_std);
         let n = rows.count.max(1) as f64;
         let weight = log_std.iter().map(|&s| ((-2.0 * f64::from(s)).exp() / n) as f32).collect();
-        Self { passes, rows, params, weight, damping }
+        Self { passes, rows, params, weight }
     }
 
-    /// Writes (H + damping)·v into `product`.
+    /// Writes H·v into `product`.
     pub(super) fn product(&self, executor: &dyn Executor, v: &[f64], product: &mut [f64]) {
         let tangent: Vec<f32> = v.iter().map(|&v| v as f32).collect();
         self.passes.gauss_newton(executor, self.rows, self.params, &tangent, &self.weight, product);
@@ -43,9 +36,6 @@ impl<'a, P: Policy> Fisher<'a, P> {
             for (to, v) in product[range.clone()].iter_mut().zip(&v[range]) {
                 *to = 2.0 * v;
             }
-        }
-        for (to, v) in product.iter_mut().zip(v) {
-            *to += self.damping * v;
         }
     }
 }

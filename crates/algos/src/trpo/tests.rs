@@ -68,7 +68,7 @@ fn product(policy: &Arc<HardwarePolicy>, batch: &Batch, params: &[f32], v: &[f64
     let mut passes = Passes::new(Arc::clone(policy));
     let mut out = vec![0.0; params.len()];
     passes.gradient(&Serial, &rows, params, 0.0, &mut out);
-    Fisher::new(&passes, &rows, params, 0.0, 0.0).product(&Serial, v, &mut out);
+    Fisher::new(&passes, &rows, params, 0.0).product(&Serial, v, &mut out);
     out
 }
 
@@ -167,6 +167,27 @@ fn the_first_step_nearly_fits() {
     let region = metrics.trust_region.unwrap();
     assert!(metrics.kl > 0.005 && metrics.kl <= 0.01, "{}", metrics.kl);
     assert!(region.step_fraction > 0.6 && region.cg_iterations == 10, "{region:?}");
+}
+
+/// One step of conjugate gradients goes along D²·g, so that a unit of 3 gives the design nine times its share. What
+/// many steps find hardly depends on the unit, as D·(D·H·D)⁻¹·D·g = H⁻¹·g but for the damping.
+#[test]
+fn the_unit_of_the_design_is_a_matter_of_conditioning() {
+    let (problem, policy) = policy();
+    let params = policy.init(2, 1.0);
+    let batch = collect(&problem, &policy, &params, 0, 20);
+    // The length of the design's part of a step over the controller's.
+    let share = |design_scale: f64, cg_iterations: usize| {
+        let config = TrpoConfig { design_scale, cg_iterations, damping: 1e-3, ..TrpoConfig::default() };
+        let mut trpo = Trpo::new(&settings(config), Arc::clone(&policy), params.clone(), 2);
+        assert!(trpo.update(&batch, 0.0, 0).unwrap().trust_region.unwrap().step_fraction > 0.0);
+        let moved: Vec<f64> = trpo.params().iter().zip(&params).map(|(a, b)| f64::from(a - b)).collect();
+        let part = |range: std::ops::Range<usize>| norm(moved[range].iter().copied());
+        part(policy.design_params()) / part(0..policy.design_params().start)
+    };
+    let (short, long) = (share(3.0, 1) / share(1.0, 1), share(3.0, 100) / share(1.0, 100));
+    assert!((short - 9.0).abs() < 1e-2, "{short}");
+    assert!((long - 1.0).abs() < 0.4, "{long}");
 }
 
 #[test]

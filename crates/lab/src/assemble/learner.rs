@@ -65,6 +65,7 @@ fn trpo(trpo: &TrpoSpec) -> TrpoConfig {
         cg_iterations: trpo.cg_iterations,
         cg_tolerance: trpo.cg_tolerance,
         damping: trpo.damping,
+        design_scale: trpo.design_scale,
         fisher_rows: if rows > 1.0 { FisherRows::Count(rows as usize) } else { FisherRows::Fraction(rows) },
         backtrack_ratio: trpo.backtrack_ratio,
         backtracks: trpo.backtracks,

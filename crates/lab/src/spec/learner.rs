@@ -95,7 +95,8 @@ pub struct PpoSpec {
 /// | `fisher_rows` | 1.0 | rows that the curvature is taken of: a share of the batch, or above 1 how many | 1e-6 to 1e7 |
 /// | `cg_iterations` | 10 | most steps of conjugate gradients | 1 to 1000 |
 /// | `cg_tolerance` | 1e-10 | they end where the squared norm of the residual is below | 0 to 1 |
-/// | `damping` | 1e-5 | added to the diagonal of the curvature | 0 to 1e3 |
+/// | `damping` | 1e-5 | added to the diagonal of the curvature, in units of the parameters | 0 to 1e3 |
+/// | `design_scale` | 1.0 | unit of the design's parameters in the equations of a step: the larger, the further the design goes for the same KL | 1e-3 to 1e3 |
 /// | `backtrack_ratio` | 0.8 | what a step that does not hold is shortened by | 0.01 to 0.99 |
 /// | `backtracks` | 15 | steps tried, the full one among them | 1 to 100 |
 /// | `normalize_advantages` | that of `[ppo]` | centred and scaled per batch | |
@@ -114,8 +115,10 @@ pub struct TrpoSpec {
     pub cg_iterations: usize,
     /// Conjugate gradients end where the squared norm of the residual is below this.
     pub cg_tolerance: f64,
-    /// Added to the diagonal of the curvature.
+    /// Added to the diagonal of the curvature, in units of the parameters.
     pub damping: f64,
+    /// Unit of the design's parameters in the equations of a step.
+    pub design_scale: f64,
     /// What a step that does not hold is shortened by.
     pub backtrack_ratio: f64,
     /// Steps tried, the full one among them.
@@ -208,6 +211,7 @@ impl TrpoSpec {
             cg_iterations: s.count("cg_iterations", 10, 1..=1000),
             cg_tolerance: s.number("cg_tolerance", 1e-10, 0.0..=1.0),
             damping: s.number("damping", 1e-5, 0.0..=1e3),
+            design_scale: s.number("design_scale", 1.0, 1e-3..=1e3),
             backtrack_ratio: s.number("backtrack_ratio", 0.8, 0.01..=0.99),
             backtracks: s.count("backtracks", 15, 1..=100),
             normalize_advantages: s.flag("normalize_advantages", ppo.normalize_advantages),

@@ -25,15 +25,7 @@ fn springs(hidden: Vec<usize>) -> (MassSpring, Arc<HardwarePolicy>) {
         observation_scale: vec![0.1, 0.5],
         placements: vec![Placement::Graph; law.design().len()],
         law,
-        noise: Noise {
-            command: 0.3,
-            effort: 3.0,
-            design: 0.1,
-            command_anneal: None,
-            effort_anneal: None,
-            design_anneal: None,
-            train: true,
-        },
+        noise: Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.1.into(), train: true },
     };
     let policy = HardwarePolicy::new(spec, problem.make(None).spec()).expect("law and plant fit");
     (problem, Arc::new(policy))

@@ -24,7 +24,7 @@ pub use environment::{
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Law, Ports};
 pub use placement::{Placement, PlacementError};
-pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows};
+pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows, Spread};
 pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity};

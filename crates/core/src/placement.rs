@@ -49,6 +49,14 @@ pub enum PlacementError {
         /// Names on the environment's side.
         environment: Vec<String>,
     },
+    /// Not one standard deviation per command.
+    #[error("noise for {given} commands, but there are {needed}")]
+    Noise {
+        /// Standard deviations given.
+        given: usize,
+        /// Commands there are.
+        needed: usize,
+    },
 }
 
 /// The components of an action, in this order: design parameters in the action, efforts if any parameter is in the graph,

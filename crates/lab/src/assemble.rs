@@ -8,7 +8,7 @@ use std::sync::Arc;
 use hwasp_algos::{Learner, Ppo, Trpo};
 use hwasp_core::{
     Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose,
-    stream,
+    Spread, stream,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::MassSpringError;
@@ -181,8 +181,12 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
     });
     let noise = &spec.noise;
     let [from, to] = noise.anneal;
-    let anneal = |last: Option<f64>, first: f64| last.map(|last| Anneal { ratio: last / first, from, to });
-    let effort = noise.effort.map_or(1.0, |effort| effort.value);
+    let spread = |first: f64, last: Option<f64>| Spread {
+        std: first,
+        anneal: last.map(|last| Anneal { ratio: last / first, from, to }),
+    };
+    let finals = noise.command_final.as_ref();
+    let commands = noise.command.0.iter().enumerate();
     PolicySpec {
         hidden: spec.controller.hidden.clone(),
         activation: match spec.controller.activation {
@@ -195,12 +199,12 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
         law: law.clone(),
         placements: placements.collect(),
         noise: Noise {
-            command: noise.command,
-            effort,
-            design: noise.design,
-            command_anneal: anneal(noise.command_final, noise.command),
-            effort_anneal: anneal(noise.effort_final.map(|effort| effort.value), effort),
-            design_anneal: anneal(noise.design_final, noise.design),
+            command: commands.map(|(i, &first)| spread(first, finals.map(|last| last.0[i]))).collect(),
+            effort: spread(
+                noise.effort.map_or(1.0, |effort| effort.value),
+                noise.effort_final.map(|effort| effort.value),
+            ),
+            design: spread(noise.design, noise.design_final),
             // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
             train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),
         },

@@ -56,15 +56,7 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         observation_scale: vec![0.1, 0.5],
         law: law.clone(),
         placements,
-        noise: Noise {
-            command: 0.3,
-            effort: 3.0,
-            design: 0.3,
-            command_anneal: None,
-            effort_anneal: None,
-            design_anneal: None,
-            train: true,
-        },
+        noise: Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.3.into(), train: true },
     };
     HardwarePolicy::new(spec, env).unwrap()
 }

@@ -19,15 +19,7 @@ use model::Model;
 /// Three springs, one in the action, one in the graph, one fixed, under a small controller.
 fn policy() -> (MassSpring, Arc<HardwarePolicy>) {
     let problem = MassSpring::stiffness(MassSpringSettings { count: 3, ..MassSpringSettings::default() }).unwrap();
-    let noise = Noise {
-        command: 0.3,
-        effort: 3.0,
-        design: 0.1,
-        command_anneal: None,
-        effort_anneal: None,
-        design_anneal: None,
-        train: true,
-    };
+    let noise = Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.1.into(), train: true };
     let spec = PolicySpec {
         hidden: vec![8, 8],
         activation: Activation::Tanh,

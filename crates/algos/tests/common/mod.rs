@@ -25,7 +25,7 @@ pub(crate) struct Case {
 }
 
 fn noise(command: f64, effort: f64, design: f64) -> Noise {
-    Noise { command, effort, design, command_anneal: None, effort_anneal: None, design_anneal: None, train: true }
+    Noise { command: vec![command.into()], effort: effort.into(), design: design.into(), train: true }
 }
 
 impl Case {

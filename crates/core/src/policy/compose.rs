@@ -2,7 +2,7 @@
 
 use hwasp_diff::{Activation, Program, Scalar, Var};
 
-use super::noise::{Anneal, Noise};
+use super::noise::{Anneal, Noise, Spread};
 use crate::environment::{EnvSpec, Port};
 use crate::hardware::Law;
 use crate::placement::{ActionLayout, Placement, PlacementError};
@@ -73,6 +73,9 @@ impl PolicySpec {
                 return Err(PlacementError::Ports { what, law: law.clone(), environment });
             }
         }
+        if self.noise.command.len() != env.command.len() {
+            return Err(PlacementError::Noise { given: self.noise.command.len(), needed: env.command.len() });
+        }
         let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
         let free: Vec<usize> =
             (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
@@ -129,13 +132,14 @@ impl PolicySpec {
 
     fn component_noise(&self, env: &EnvSpec, layout: &ActionLayout) -> Vec<ComponentNoise> {
         let (noise, space) = (&self.noise, self.law.design());
-        let component = |std: f64, anneal| ComponentNoise { log_std: std.ln(), anneal };
+        let component =
+            |spread: &Spread, range: f64| ComponentNoise { log_std: (spread.std * range).ln(), anneal: spread.anneal };
         let design = layout.sampled.iter().map(|&i| {
             let (lo, hi) = space.bounds(i);
-            component(noise.design * (hi - lo), noise.design_anneal)
+            component(&noise.design, hi - lo)
         });
-        let effort = (0..layout.efforts).map(|_| component(noise.effort, noise.effort_anneal));
-        let command = env.command.iter().map(|p| component(noise.command_std(p), noise.command_anneal));
+        let effort = (0..layout.efforts).map(|_| component(&noise.effort, 1.0));
+        let command = env.command.iter().zip(&noise.command).map(|(port, spread)| component(spread, port.hi - port.lo));
         design.chain(effort).chain(command).collect()
     }
 }

@@ -11,7 +11,7 @@ mod noise;
 pub use actor::Actor;
 pub use compose::PolicySpec;
 pub use hardware_policy::{HardwarePolicy, PolicyTape};
-pub use noise::{Anneal, Noise};
+pub use noise::{Anneal, Noise, Spread};
 
 use std::ops::Range;
 

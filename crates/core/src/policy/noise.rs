@@ -1,7 +1,5 @@
 //! How strongly each action component is explored.
 
-use crate::environment::CommandPort;
-
 /// A change of the noise over training: geometric from 1 to `ratio` between two fractions of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anneal {
@@ -21,28 +19,30 @@ impl Anneal {
     }
 }
 
-/// Initial standard deviations of the parts of an action, and how they change.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Noise {
-    /// Of each command, as a fraction of the motor's range.
-    pub command: f64,
-    /// Of each effort, SI.
-    pub effort: f64,
-    /// Of each design parameter in the action, as a fraction of its range.
-    pub design: f64,
-    /// Schedule of the commands' noise.
-    pub command_anneal: Option<Anneal>,
-    /// Schedule of the efforts' noise.
-    pub effort_anneal: Option<Anneal>,
-    /// Schedule of the design's noise.
-    pub design_anneal: Option<Anneal>,
-    /// Whether the log standard deviations are parameters that are trained (on top of a schedule).
-    pub train: bool,
+/// A standard deviation and how it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// At the start.
+    pub std: f64,
+    /// Its schedule.
+    pub anneal: Option<Anneal>,
 }
 
-impl Noise {
-    /// Of one command, SI.
-    pub(crate) fn command_std(&self, port: &CommandPort) -> f64 {
-        self.command * (port.hi - port.lo)
+impl From<f64> for Spread {
+    fn from(std: f64) -> Self {
+        Self { std, anneal: None }
     }
+}
+
+/// How strongly the parts of an action are explored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noise {
+    /// Of each command, as a fraction of its motor's range.
+    pub command: Vec<Spread>,
+    /// Of each effort, SI.
+    pub effort: Spread,
+    /// Of each design parameter in the action, as a fraction of its range.
+    pub design: Spread,
+    /// Whether the log standard deviations are parameters that are trained (on top of a schedule).
+    pub train: bool,
 }

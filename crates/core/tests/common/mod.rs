@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use hwasp_core::{
     Anneal, Batch, CommandPort, DesignGroup, DesignSpace, Dimension, EnvSpec, Environment, Hardware, HardwarePolicy,
-    Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Plant, PolicySpec, Port, Ports, Robot, Stream,
-    Task,
+    Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Plant, PolicySpec, Port, Ports, Robot, Spread,
+    Stream, Task,
 };
 use hwasp_diff::{Activation, Scalar};
 use rand::RngExt;
@@ -120,14 +120,11 @@ pub(crate) fn env_spec() -> EnvSpec {
 
 /// Noise of another size for each part of the action; the design's leaves its limits now and then.
 pub(crate) fn noise() -> Noise {
-    let anneal = |ratio, from, to| Some(Anneal { ratio, from, to });
+    let spread = |std, ratio, from, to| Spread { std, anneal: Some(Anneal { ratio, from, to }) };
     Noise {
-        command: 0.3,
-        effort: 2.0,
-        design: 0.4,
-        command_anneal: anneal(0.01, 0.25, 0.75),
-        effort_anneal: None,
-        design_anneal: anneal(0.1, 0.0, 0.5),
+        command: vec![spread(0.3, 0.01, 0.25, 0.75); 2],
+        effort: 2.0.into(),
+        design: spread(0.4, 0.1, 0.0, 0.5),
         train: true,
     }
 }

@@ -36,12 +36,9 @@ pub(crate) fn train(
     effort_noise: f64,
 ) -> Result<Learned, Box<dyn Error>> {
     let noise = Noise {
-        command: 0.3, // of the motor's range
-        effort: effort_noise,
-        design: 0.1, // of the parameter's range, where it sits in the action
-        command_anneal: None,
-        effort_anneal: None,
-        design_anneal: None,
+        command: vec![0.3.into()], // of the motor's range
+        effort: effort_noise.into(),
+        design: 0.1.into(), // of the parameter's range, where it sits in the action
         train: true,
     };
     let spec = PolicySpec {

@@ -97,7 +97,7 @@ fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, Assemb
 
 #[cfg(feature = "mujoco")]
 fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
-    use hwasp_mujoco::grasp::{GraspSettings, Inertia, ShapeKind};
+    use hwasp_mujoco::grasp::{GraspReward, GraspSettings, Inertia, ShapeKind};
     use hwasp_tasks::hand::{HandDescription, PalmMotion};
 
     let starts = initial(spec);
@@ -132,6 +132,7 @@ fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSe
         sensor_noise: [p.position_noise, p.travel_noise],
         actuation_noise: [p.position_noise, p.travel_noise],
         disturbance: [p.disturbance_force, p.disturbance_torque],
+        reward: GraspReward { distance: -p.distance_penalty, contact: p.contact_reward, ..GraspReward::default() },
         horizon: spec.task.horizon,
         ..GraspSettings::default()
     }

@@ -74,6 +74,8 @@ pub struct SpanSpec {
 /// | `position_noise` | "1 mm" | standard deviation of sensed positions and of the palm's target | 0 to 50 mm |
 /// | `travel_noise` | "0.08 mm" | the same of the motor's travel | 0 to 5 mm |
 /// | `disturbance_force`, `disturbance_torque` | "0.02 N", "0.002 N·m" | standard deviation on palm and object, redrawn each step | 0 to 100 |
+/// | `distance_penalty` | 2.0 | off the reward of a step, per metre between palm and object | 0 to 1000 |
+/// | `contact_reward` | 0.1 | reward of a step for each distal link that touches the object | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GraspProblem {
     /// Limits of the design.
@@ -114,6 +116,10 @@ pub struct GraspProblem {
     /// Of the disturbing torque, N·m.
     #[serde(serialize_with = "quantity::newton_metres")]
     pub disturbance_torque: f64,
+    /// Off the reward of a step, per metre between palm and object.
+    pub distance_penalty: f64,
+    /// Reward of a step for each distal link that touches the object.
+    pub contact_reward: f64,
 }
 
 impl GraspProblem {
@@ -134,6 +140,8 @@ impl GraspProblem {
         "travel_noise",
         "disturbance_force",
         "disturbance_torque",
+        "distance_penalty",
+        "contact_reward",
     ];
 
     /// Reads what is set; `spatial` for 3D-Grasp.
@@ -159,6 +167,8 @@ impl GraspProblem {
             travel_noise: s.quantity("travel_noise", length, 8e-5, &(0.0..=0.005)),
             disturbance_force: s.quantity("disturbance_force", Dimension::Force, 0.02, &(0.0..=100.0)),
             disturbance_torque: s.quantity("disturbance_torque", Dimension::Torque, 0.002, &(0.0..=100.0)),
+            distance_penalty: s.number("distance_penalty", 2.0, 0.0..=1000.0),
+            contact_reward: s.number("contact_reward", 0.1, 0.0..=1000.0),
         }
     }
 }

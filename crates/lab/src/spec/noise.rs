@@ -18,11 +18,15 @@ pub struct EffortSpec {
     pub dimension: Dimension,
 }
 
+/// A number for each command; one alone stands for all in files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerCommand(pub Vec<f64>);
+
 /// `[noise]`: initial standard deviations, trained or annealed from there.
 ///
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
-/// | `command` | 0.3 | of the motor command, as a fraction of its range | 1e-6 to 10 |
+/// | `command` | 0.3 | of the motor commands, as a fraction of their range; a list for one each | 1e-6 to 10 |
 /// | `effort` | "3 N" (rigid bar: "0.1 m", reach: "0.1 m/s", pendulum: "0.5 N·m", grasps: "0.02 N·m") | of the effort, where a parameter sits in the graph | 1e-6 to 1e4 |
 /// | `design` | 0.3 | of a parameter in the action, as a fraction of its range | 1e-6 to 10 |
 /// | `command_final`, `effort_final`, `design_final` | "none" | annealed geometrically to this | as above |
@@ -31,11 +35,11 @@ pub struct EffortSpec {
 /// | `learning_rate_scale` | 1.0 | times the policy's learning rate (PPO) | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NoiseSpec {
-    /// Of the motor command, as a fraction of its range.
-    pub command: f64,
+    /// Of the motor commands, as a fraction of their range.
+    pub command: PerCommand,
     /// What that is annealed to.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub command_final: Option<f64>,
+    pub command_final: Option<PerCommand>,
     /// Of the effort; none where no parameter sits in the graph, and the effort is no action.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<EffortSpec>,
@@ -59,13 +63,14 @@ impl NoiseSpec {
     /// Reads the table for a task and the places of its parameters.
     pub(super) fn read(mut s: Section<'_>, task: &TaskSpec, design: &DesignSpec) -> Self {
         let fraction = 1e-6..=10.0;
-        let command = s.number("command", 0.3, fraction.clone());
-        let command_final = s.optional_number("command_final", fraction.clone());
+        let commands = task.commands();
+        let command = s.each("command", commands, &fraction).unwrap_or_else(|| vec![0.3; commands]);
+        let command_final = s.each("command_final", commands, &fraction).map(PerCommand);
         let in_graph = (0..task.groups().iter().map(|g| g.count).sum()).any(|i| design.place_of(i) == Place::Graph);
         let (effort, effort_final) =
             if in_graph { read_effort(&mut s, task) } else { (skim(&mut s, "effort"), skim(&mut s, "effort_final")) };
         let spec = Self {
-            command,
+            command: PerCommand(command),
             command_final,
             effort,
             effort_final,
@@ -123,6 +128,15 @@ fn read_anneal(s: &mut Section<'_>) -> [f64; 2] {
     let rest = "is not a pair [begin, end] with 0 <= begin <= end <= 1";
     s.wrong("anneal", node, rest, Some(format!("fractions of training; the default is {DEFAULT:?}")));
     DEFAULT
+}
+
+impl Serialize for PerCommand {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.0[..] {
+            [first, rest @ ..] if rest.iter().all(|other| other == first) => serializer.serialize_f64(*first),
+            all => serializer.collect_seq(all),
+        }
+    }
 }
 
 impl Serialize for EffortSpec {

@@ -217,6 +217,15 @@ impl TaskSpec {
         }
     }
 
+    /// How many commands the controller gives.
+    pub fn commands(&self) -> usize {
+        match self.kind() {
+            ProblemKind::Reach | ProblemKind::Stiffness | ProblemKind::BarLength | ProblemKind::Pendulum => 1,
+            ProblemKind::ZGrasp => 2,
+            ProblemKind::SpatialGrasp => 4,
+        }
+    }
+
     /// What the law hands to the plant.
     pub fn effort_dimension(&self) -> Dimension {
         match &self.problem {

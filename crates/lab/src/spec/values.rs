@@ -206,6 +206,23 @@ impl Section<'_> {
         }
     }
 
+    /// A real number for each of so many commands, or one for all; none where the key is absent, "none" or wrong.
+    pub(super) fn each(&mut self, key: &'static str, length: usize, range: &RangeInclusive<f64>) -> Option<Vec<f64>> {
+        let node = self.take(key).filter(|node| !is_none(node))?;
+        let hint = || format!("one number, or a list of one for each of the {length} commands");
+        match &node.value {
+            Value::List(items) if items.len() == length => {
+                let checked = items.iter().map(|item| self.checked_number(key, item, range, hint()));
+                checked.collect::<Vec<_>>().into_iter().collect()
+            }
+            Value::List(_) => {
+                self.wrong(key, node, &format!("is not of length {length}"), Some(hint()));
+                None
+            }
+            _ => self.checked_number(key, node, range, hint()).map(|value| vec![value; length]),
+        }
+    }
+
     /// Sizes of layers.
     pub(super) fn counts(
         &mut self,

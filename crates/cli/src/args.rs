@@ -45,6 +45,8 @@ pub(crate) enum Command {
     Train(TrainArgs),
     /// Evaluate a run: the deterministic policy on held-out starts, on the hardware as built
     Eval(EvalArgs),
+    /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
+    Design(DesignArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
     /// Train methods against each other, several seeds each under one budget, and say which is better
@@ -160,6 +162,18 @@ pub(crate) struct EvalArgs {
     #[arg(long)]
     pub(crate) native_tendons: bool,
     /// Print JSON, for scripts
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct DesignArgs {
+    /// A run folder, as `hwasp train` writes one
+    pub(crate) run: PathBuf,
+    /// Where a hand's closing chart is drawn, closing.svg and closing.png [default: the run folder]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON, for scripts; the chart is then drawn only where --out says
     #[arg(long)]
     pub(crate) json: bool,
 }

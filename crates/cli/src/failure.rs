@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use hwasp_lab::RunError;
+use hwasp_lab::plot::PlotError;
 
 /// An error, and whether it was there before any work began.
 #[derive(Debug)]
@@ -57,12 +58,14 @@ fn way_out(error: &RunError) -> Option<String> {
     match error {
         RunError::NotARun { .. } => Some("name a folder that `hwasp train` has written".into()),
         RunError::Unfinished { path, .. } => Some(again(path)),
-        RunError::Policy { path, .. } | RunError::Metrics { path, .. } => {
+        RunError::Policy { path, .. } | RunError::Metrics { path, .. } | RunError::Decode { path, .. } => {
             let folder = path.parent().unwrap_or(Path::new(""));
             Some(format!("the file was changed or damaged, or belongs to another run; {}", again(folder)))
         }
         RunError::Io { action: "read", path, .. } => Some(again(path.parent().unwrap_or(Path::new("")))),
-        RunError::Io { action: "create", .. } => Some("name another folder with --out".into()),
+        RunError::Io { action: "create", .. } | RunError::Plot(PlotError::Write { .. }) => {
+            Some("name another folder with --out".into())
+        }
         _ => None,
     }
 }

@@ -21,6 +21,7 @@ fn main() -> ExitCode {
     let result = match &args.command {
         Command::Train(train) => commands::train::run(train),
         Command::Eval(eval) => commands::eval::run(eval),
+        Command::Design(design) => commands::design::run(design),
         Command::Plot(plot) => commands::plot::run(plot),
         Command::Compare(compare) => commands::compare::run(compare),
         Command::Reproduce(reproduce) => commands::reproduce::run(reproduce),

@@ -1,5 +1,7 @@
 //! What the program says, as text.
 
+pub(crate) mod design;
+
 use std::fmt::Write;
 use std::path::Path;
 

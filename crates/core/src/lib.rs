@@ -27,4 +27,4 @@ pub use placement::{Placement, PlacementError};
 pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows, Spread};
 pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
 pub use streams::{Purpose, Stream, stream};
-pub use units::{Dimension, Unit, UnitError, parse_quantity};
+pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

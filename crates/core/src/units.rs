@@ -113,6 +113,20 @@ impl Dimension {
     }
 }
 
+/// The unit of this symbol, if there is one.
+pub fn unit(symbol: &str) -> Option<Unit> {
+    UNITS.iter().find(|unit| unit.symbol == symbol).copied()
+}
+
+impl Unit {
+    /// The unit of the same dimension in which values of this size, SI, read well: what is below a tenth of a metre is told in
+    /// mm. Itself where there is none that is a thousandth.
+    pub fn readable(self, size: f64) -> Self {
+        let mut units = UNITS.iter().filter(|unit| size.abs() < 0.1 && unit.dimension == self.dimension);
+        units.find(|unit| unit.to_si == 1e-3).copied().unwrap_or(self)
+    }
+}
+
 /// Reads `"100 N/m"` or `"2.5 N·mm"` (also `N*mm`) and returns the SI value.
 pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     let trimmed = text.trim();
@@ -156,5 +170,13 @@ mod tests {
         assert!(matches!(parse_quantity("100 N", Dimension::Stiffness), Err(UnitError::Dimension { .. })));
         assert!(matches!(parse_quantity("100 lbf", Dimension::Force), Err(UnitError::Unknown { .. })));
         assert!(matches!(parse_quantity("fast", Dimension::Speed), Err(UnitError::Number { .. })));
+    }
+
+    #[test]
+    fn small_quantities_have_small_units() {
+        let readable = |symbol, size| unit(symbol).unwrap().readable(size);
+        assert_eq!((readable("m", 0.012).symbol, readable("m", 0.012).to_si), ("mm", 1e-3));
+        assert_eq!((readable("m", 0.5).symbol, readable("N·m/rad", 0.01).symbol), ("m", "N·mm/rad"));
+        assert_eq!((readable("", 0.01).symbol, readable("rad", 0.01).symbol, unit("lbf")), ("", "rad", None));
     }
 }

@@ -7,6 +7,7 @@
 
 mod assemble;
 pub mod compare;
+pub mod design;
 mod drawing;
 mod evaluate;
 pub mod metrics;

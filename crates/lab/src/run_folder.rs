@@ -98,14 +98,14 @@ pub enum RunError {
 const EXPERIMENT: &str = "experiment.toml";
 const PROVENANCE: &str = "provenance.json";
 const METRICS: &str = "metrics.csv";
-const DESIGN: &str = "design.toml";
+pub(crate) const DESIGN: &str = "design.toml";
 const POLICY: &str = "policy.safetensors";
 /// Written last: a folder that has it is finished.
 pub(crate) const SUMMARY: &str = "summary.json";
 const CURVES: &str = "curves.svg";
 
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.
-const LARGEST_SUMMARY: u64 = 16 << 20;
+pub(crate) const LARGEST_SUMMARY: u64 = 16 << 20;
 
 /// Where a run came from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -272,15 +272,7 @@ impl SavedRun {
 
     /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
     pub fn open_with(path: &Path, assignments: &[String]) -> Result<Self, RunError> {
-        let file = path.join(EXPERIMENT);
-        if !file.is_file() {
-            return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
-        }
-        let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
-        let text = String::from_utf8_lossy(&text);
-        let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
-        let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
-        let spec = spec::resolve(layers, None)?;
+        let spec = saved_spec(path, assignments)?;
         Ok(Self { path: path.to_owned(), assembly: Assembly::new(&spec)? })
     }
 
@@ -331,8 +323,21 @@ impl SavedRun {
     }
 }
 
+/// The experiment of a run folder, with values of it set anew (`key=value`).
+pub(crate) fn saved_spec(path: &Path, assignments: &[String]) -> Result<Spec, RunError> {
+    let file = path.join(EXPERIMENT);
+    if !file.is_file() {
+        return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
+    }
+    let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
+    let text = String::from_utf8_lossy(&text);
+    let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
+    let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
+    Ok(spec::resolve(layers, None)?)
+}
+
 /// Reads a file that a stranger may have sent.
-fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, RunError> {
+pub(crate) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, RunError> {
     let error = |source| io_error("read", path, source);
     let file = File::open(path).map_err(error)?;
     let mut bytes = Vec::new();

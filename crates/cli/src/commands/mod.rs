@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod design;
 pub(crate) mod eval;
 pub(crate) mod graph;
 pub(crate) mod list;
@@ -49,8 +50,13 @@ fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec
 
 /// The run that was written to a folder.
 fn saved_run(path: &Path, set: &[String]) -> Result<SavedRun, Failure> {
+    SavedRun::open_with(run_folder(path)?, set).map_err(Failure::input)
+}
+
+/// The folder of a run, if there is a folder at all.
+fn run_folder(path: &Path) -> Result<&Path, Failure> {
     if path.is_dir() {
-        return SavedRun::open_with(path, set).map_err(Failure::input);
+        return Ok(path);
     }
     let what = if path.exists() { "is not a folder" } else { "does not exist" };
     let hint = "name a run folder; `hwasp train` says where it writes one, under runs/ unless --out names another";

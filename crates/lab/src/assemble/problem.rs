@@ -98,17 +98,15 @@ fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, Assemb
 #[cfg(feature = "mujoco")]
 fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
     use hwasp_mujoco::grasp::{GraspReward, GraspSettings, Inertia, ShapeKind};
-    use hwasp_tasks::hand::{HandDescription, PalmMotion};
+    use hwasp_tasks::hand::PalmMotion;
 
     let starts = initial(spec);
-    let mut hand = HandDescription::default();
-    hand.transmission.tension_limit = p.tension_limit;
     GraspSettings {
         palm: match spec.task.problem {
             Problem::SpatialGrasp(_) => PalmMotion::Spatial,
             _ => PalmMotion::Vertical,
         },
-        hand,
+        hand: p.hand(),
         range: p.range.into(),
         initial: std::array::from_fn(|i| starts[i]),
         shapes: p

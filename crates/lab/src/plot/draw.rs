@@ -7,8 +7,23 @@ use super::{Band, PlotOptions};
 /// A label of the legend and how many runs share it.
 #[derive(Debug)]
 pub(super) struct Entry<'a> {
+    /// Its place among the shapes of the panels, which is its colour.
+    pub(super) place: usize,
     pub(super) label: &'a str,
     pub(super) runs: usize,
+}
+
+/// The texts around the panels.
+#[derive(Debug)]
+pub(super) struct Page<'a> {
+    /// The line above everything; empty for none.
+    pub(super) title: &'a str,
+    /// What readers of screens hear where there is no title.
+    pub(super) untitled: &'a str,
+    /// What the legend calls the dashed horizontal lines.
+    pub(super) reference: &'a str,
+    /// The line below everything.
+    pub(super) explanation: String,
 }
 
 const TITLE_SIZE: f64 = 15.0;
@@ -17,7 +32,7 @@ const LEGEND_ROW: f64 = 19.0;
 const SWATCH: f64 = 24.0;
 
 /// Draws everything.
-pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], options: &PlotOptions) -> String {
+pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) -> String {
     let (left, top, right, bottom) = MARGINS;
     let cell = (left + AREA.0 + right, top + AREA.1 + bottom);
     let columns = match panels.len() {
@@ -27,15 +42,15 @@ pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], options: &PlotOpt
     };
     let width = cell.0 * columns as f64;
     let reach = width - left - 12.0;
-    let title = cut(&options.title, TITLE_SIZE, reach);
-    let legend = Legend::lay_out(panels, entries, reach);
+    let title = cut(page.title, TITLE_SIZE, reach);
+    let legend = Legend::lay_out(panels, entries, page.reference, reach);
     let title_end = if title.is_empty() { 8.0 } else { 32.0 };
     let panels_start = title_end + legend.height() + 6.0;
     let rows = panels.len().div_ceil(columns);
     let panels_end = panels_start + cell.1 * rows as f64;
     let height = panels_end + 20.0;
 
-    let mut svg = Svg::new(width, height, if title.is_empty() { "learning curves" } else { &title });
+    let mut svg = Svg::new(width, height, if title.is_empty() { page.untitled } else { &title });
     if !title.is_empty() {
         svg.text((left, 24.0), TITLE_SIZE, Anchor::Start, INK, &title);
     }
@@ -44,12 +59,12 @@ pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], options: &PlotOpt
         let corner = ((place % columns) as f64 * cell.0 + left, (place / columns) as f64 * cell.1 + panels_start + top);
         panel.draw(&mut svg, corner);
     }
-    svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &explanation(panels, options));
+    svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &page.explanation);
     svg.finish()
 }
 
 /// What lines and bands mean, for whoever meets the picture without its text.
-fn explanation(panels: &[Panel], options: &PlotOptions) -> String {
+pub(super) fn explanation(panels: &[Panel], options: &PlotOptions) -> String {
     let window = options.window;
     let single = match window {
         1 => String::new(),
@@ -77,8 +92,8 @@ fn explanation(panels: &[Panel], options: &PlotOptions) -> String {
 enum Swatch {
     /// The label at this place, with a band or without.
     Label { place: usize, band: bool },
-    /// The dashes of an optimum.
-    Optimum,
+    /// The dashes of an optimum or a limit.
+    Reference,
 }
 
 /// Texts with their swatches and positions, wrapped into rows.
@@ -87,17 +102,17 @@ struct Legend {
 }
 
 impl Legend {
-    fn lay_out(panels: &[Panel], entries: &[Entry<'_>], reach: f64) -> Self {
+    fn lay_out(panels: &[Panel], entries: &[Entry<'_>], reference: &str, reach: f64) -> Self {
         let mut texts: Vec<(Swatch, String)> = Vec::new();
-        for (place, entry) in entries.iter().enumerate() {
-            let (band, runs) = (entry.runs > 1, entry.runs);
+        for entry in entries {
+            let (place, band, runs) = (entry.place, entry.runs > 1, entry.runs);
             let suffix = if band { format!(" ({runs} runs)") } else { String::new() };
             let room = (reach - SWATCH - 8.0 - text_width(&suffix, LEGEND_SIZE)).min(420.0);
             let text = format!("{}{suffix}", cut(entry.label, LEGEND_SIZE, room));
             texts.push((Swatch::Label { place, band }, text));
         }
         if panels.iter().any(|panel| panel.text.optimum.is_some()) {
-            texts.push((Swatch::Optimum, "optimum".to_owned()));
+            texts.push((Swatch::Reference, reference.to_owned()));
         }
         let (mut x, mut y) = (0.0, 0.0);
         let mut items = Vec::with_capacity(texts.len());
@@ -129,7 +144,7 @@ impl Legend {
                     }
                     svg.line((x, y), end, &stroke(*place));
                 }
-                Swatch::Optimum => svg.line((x, y), end, OPTIMUM),
+                Swatch::Reference => svg.line((x, y), end, OPTIMUM),
             }
             svg.text((end.0 + 7.0, y + 4.0), LEGEND_SIZE, Anchor::Start, INK, text);
         }

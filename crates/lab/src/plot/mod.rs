@@ -3,8 +3,11 @@
 //! A label with one run shows its return as logged (pale) and as a trailing mean (full). Runs that share a label, such as
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
 //! smoothed. The picture is SVG text; a PNG is that same SVG drawn with an embedded font.
+//!
+//! [`closing_plot`] draws the closing chart of a hand with the same panels.
 
 mod axis;
+mod closing;
 mod draw;
 mod output;
 mod panel;
@@ -16,6 +19,7 @@ use crate::stats::StatsError;
 use std::path::PathBuf;
 use thiserror::Error;
 
+pub use closing::closing_plot;
 pub use output::{render_png, write_plot};
 pub use series::Note;
 
@@ -234,11 +238,21 @@ pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> 
     let mut panels = Vec::new();
     for column in columns {
         let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));
-        panels.push(panel::Panel::new(text_of(column, options), options.x_axis, shapes.collect::<Result<_, _>>()?));
+        panels.push(panel::Panel::new(
+            text_of(column, options),
+            options.x_axis.label(),
+            shapes.collect::<Result<_, _>>()?,
+        ));
     }
     let legend: Vec<draw::Entry<'_>> =
-        groups.iter().map(|group| draw::Entry { label: &group[0].label, runs: group.len() }).collect();
-    Ok(Plot { svg: draw::picture(&panels, &legend, options), notes })
+        groups.iter().enumerate().map(|(place, g)| draw::Entry { place, label: &g[0].label, runs: g.len() }).collect();
+    let page = draw::Page {
+        title: &options.title,
+        untitled: "learning curves",
+        reference: "optimum",
+        explanation: draw::explanation(&panels, options),
+    };
+    Ok(Plot { svg: draw::picture(&panels, &legend, &page), notes })
 }
 
 /// The panel's text: as given, or the column's own name without underscores.

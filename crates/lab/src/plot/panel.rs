@@ -1,9 +1,9 @@
 //! One panel: axes, grid, and the lines of every label.
 
+use super::PanelText;
 use super::axis::{Axis, value_label};
 use super::series::{Line, Point, Shape, thin};
 use super::svg::{Anchor, Svg};
-use super::{PanelText, XAxis};
 
 /// The plotting area, in pixels.
 pub(super) const AREA: (f64, f64) = (360.0, 236.0);
@@ -22,6 +22,9 @@ const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9
 /// A second and third round of colours is dashed.
 const DASHES: [&str; 3] = ["", " stroke-dasharray=\"7 2.5\"", " stroke-dasharray=\"2 2\""];
 
+/// The first place whose lines are dashed; their colours are those from the beginning.
+pub(super) const SECOND_ROUND: usize = COLOURS.len();
+
 /// The colour of the label at this place in the legend.
 pub(super) fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
@@ -37,13 +40,13 @@ pub(super) fn stroke(place: usize) -> String {
 #[derive(Debug)]
 pub(super) struct Panel {
     pub(super) text: PanelText,
-    x_axis: XAxis,
+    x_label: &'static str,
     shapes: Vec<Option<Shape>>,
 }
 
 impl Panel {
-    pub(super) fn new(text: PanelText, x_axis: XAxis, shapes: Vec<Option<Shape>>) -> Self {
-        Self { text, x_axis, shapes }
+    pub(super) fn new(text: PanelText, x_label: &'static str, shapes: Vec<Option<Shape>>) -> Self {
+        Self { text, x_label, shapes }
     }
 
     /// Whether a label is drawn as a mean with a band.
@@ -80,7 +83,7 @@ impl Panel {
             values.chain(self.text.optimum).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let values = if low <= high { Axis::of_values(low, high) } else { Axis::of_values(0.0, 1.0) };
         let frame = Frame { corner, x: Axis::of_progress(last), values };
-        frame.draw_axes(svg, &self.text, self.x_axis);
+        frame.draw_axes(svg, &self.text, self.x_label);
         if points.is_empty() {
             let middle = (corner.0 + AREA.0 / 2.0, corner.1 + AREA.1 / 4.0);
             svg.text(middle, 12.0, Anchor::Middle, GREY, "no rows to draw");
@@ -115,7 +118,7 @@ impl Frame {
         (self.corner.0 + x * AREA.0, self.corner.1 + (1.0 - y) * AREA.1)
     }
 
-    fn draw_axes(&self, svg: &mut Svg, text: &PanelText, x_axis: XAxis) {
+    fn draw_axes(&self, svg: &mut Svg, text: &PanelText, x_label: &str) {
         let (left, top) = self.corner;
         let (right, bottom) = (left + AREA.0, top + AREA.1);
         for (tick, label) in self.x.ticks().into_iter().zip(self.x.engineering_labels()) {
@@ -133,7 +136,7 @@ impl Frame {
         svg.line((left, top), (left, bottom), FRAME);
         svg.line((left, bottom), (right, bottom), FRAME);
         let middle = (left + AREA.0 / 2.0, bottom + 35.0);
-        svg.text(middle, 12.0, Anchor::Middle, INK, x_axis.label());
+        svg.text(middle, 12.0, Anchor::Middle, INK, x_label);
         let unit = if text.unit.is_empty() { String::new() } else { format!(" ({})", text.unit) };
         svg.upward_text((left - 56.0, top + AREA.1 / 2.0), 12.0, INK, &format!("{}{unit}", text.label));
     }

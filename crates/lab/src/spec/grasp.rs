@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use hwasp_core::Dimension;
-use hwasp_tasks::hand::HandRange;
+use hwasp_tasks::hand::{HandDescription, HandRange};
 use serde::{Serialize, Serializer};
 
 use super::names::named;
@@ -123,6 +123,13 @@ pub struct GraspProblem {
 }
 
 impl GraspProblem {
+    /// The hand that grasps: everything about it that is not designed.
+    pub fn hand(&self) -> HandDescription {
+        let mut hand = HandDescription::default();
+        hand.transmission.tension_limit = self.tension_limit;
+        hand
+    }
+
     /// The keys, for messages to other problems.
     pub(super) const KEYS: &'static [&'static str] = &[
         "range",

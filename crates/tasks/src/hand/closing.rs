@@ -117,6 +117,25 @@ pub fn closing_chart(hand: &HandDescription, design: &[f64; DESIGN_LEN], points:
         .collect()
 }
 
+/// The travel of the motor, m, at which free closing alone takes all the tension that it has; all of its travel if that is
+/// never so.
+pub fn closing_end(hand: &HandDescription, design: &[f64; DESIGN_LEN]) -> f64 {
+    let spare = |travel: f64| {
+        let (thumb, finger) = (FreeClosing::thumb(hand, design, travel), FreeClosing::finger(hand, design, travel));
+        hand.transmission.tension_limit - thumb.tension - 2.0 * finger.tension
+    };
+    let (mut within, mut beyond) = (0.0, hand.transmission.travel);
+    if spare(beyond) >= 0.0 {
+        return beyond;
+    }
+    // The tension grows with the travel: halving finds the place to the last bits.
+    for _ in 0..60 {
+        let middle = 0.5 * (within + beyond);
+        if spare(middle) >= 0.0 { within = middle } else { beyond = middle }
+    }
+    within
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::space::{PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE};
@@ -160,5 +179,17 @@ mod tests {
             }
             assert_eq!(chart[45].thumb.angles, [1.57, 1.57]);
         }
+    }
+    #[test]
+    fn closing_ends_where_the_motor_has_no_more() {
+        let mut hand = HandDescription::default();
+        for design in [PAPER_HWASP, PAPER_MINIMAL, SMALL_CENTRE] {
+            let end = closing_end(&hand, &design);
+            let tension = FreeClosing::thumb(&hand, &design, end).tension
+                + 2.0 * FreeClosing::finger(&hand, &design, end).tension;
+            assert!(end < 0.045 && (tension - 75.0).abs() < 1e-9, "{tension} N at {end} m");
+        }
+        hand.transmission.tension_limit = 1000.0;
+        assert_eq!(closing_end(&hand, &PAPER_HWASP), 0.045);
     }
 }

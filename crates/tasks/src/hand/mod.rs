@@ -41,7 +41,7 @@ mod space;
 mod statics;
 mod xml;
 
-pub use closing::{ClosingPoint, FreeClosing, closing_chart};
+pub use closing::{ClosingPoint, FreeClosing, closing_chart, closing_end};
 pub use description::{
     FingerDescription, HandDescription, JointDescription, LinkDescription, ObjectDescription, PalmDescription,
     TransmissionDescription,
@@ -50,4 +50,4 @@ pub use error::HandError;
 pub use law::{PalmMotion, TendonHand, TendonHandSettings};
 pub use mjcf::{Drive, MjcfOptions, mjcf};
 pub use space::{DESIGN_LEN, HandParameter, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
-pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band};
+pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band, torque_ratio};

@@ -94,6 +94,27 @@ pub fn pinch_band(hand: &HandDescription, width: f64, below: f64, friction: f64)
     Some(PinchBand { lo: a.min(b), hi: a.max(b) })
 }
 
+/// The ratio of proximal to distal joint torque that thumb (`false`) or finger (`true`) of a design have in the pose of
+/// [`pinch_band`], springs included, while its tendon pulls `tension` (N). `None` if the links do not reach or the tendon
+/// does not overcome both springs.
+pub fn torque_ratio(
+    hand: &HandDescription,
+    design: &[f64; DESIGN_LEN],
+    finger: bool,
+    width: f64,
+    tension: f64,
+) -> Option<f64> {
+    let (digit, first) = digit_of(hand, finger);
+    // The pose does not depend on where along the upright distal link the contact is.
+    let angles = Pinch::new(hand, digit, width, 0.0)?.angles;
+    let torque = |j: usize| {
+        let kind = first + j;
+        design[kind] * tension - design[4 + kind] * (angles[j] + design[8 + kind])
+    };
+    let (proximal, distal) = (torque(0), torque(1));
+    (proximal > 0.0 && distal > 0.0).then(|| proximal / distal)
+}
+
 /// A lift by the fingertips.
 ///
 /// | field | default | purpose | must be |
@@ -219,6 +240,18 @@ mod tests {
             assert!((band.lo - lo).abs() < 0.006 && (band.hi - hi).abs() < 0.006, "{width} m: {band:?}");
         }
         assert_eq!(pinch_band(&hand, 0.2, 0.03, 0.5), None);
+    }
+
+    /// A thumb on an object of 80 mm: sin(lean) = (0.052 - 0.035)/0.05, so the joints are at 0.7854 - 0.3469 and 0.3469 rad.
+    #[test]
+    fn springs_take_their_share_of_the_torque() {
+        let hand = HandDescription::default();
+        let ratio = torque_ratio(&hand, &PAPER_HWASP, false, 0.08, 25.0).unwrap();
+        let by_hand = (0.25 - 6.2e-3 * 2.438_5) / (0.1875 - 6.1e-3 * 1.846_9);
+        assert!((ratio - by_hand).abs() < 1e-4, "{ratio}, not {by_hand}");
+        assert!((torque_ratio(&hand, &PAPER_HWASP, true, 0.08, 1e9).unwrap() - 3.0 / 2.6).abs() < 1e-6);
+        assert_eq!(torque_ratio(&hand, &PAPER_HWASP, false, 0.08, 1.0), None);
+        assert_eq!(torque_ratio(&hand, &PAPER_HWASP, false, 0.2, 25.0), None);
     }
 
     #[test]

@@ -1,0 +1,33 @@
+//! `hwasp design`.
+
+use hwasp_lab::design::{DesignReport, write_closing};
+
+use super::run_folder;
+use crate::args::DesignArgs;
+use crate::failure::Failure;
+use crate::{output, report};
+
+pub(crate) fn run(args: &DesignArgs) -> Result<(), Failure> {
+    let report = DesignReport::open(run_folder(&args.run)?).map_err(Failure::input)?;
+    if args.out.is_some() && report.hand.is_none() {
+        let task = &report.task;
+        return Err(Failure::input(format!(
+            "--out names a folder for the closing chart, which a hand has and {task} has not\n  = hint: leave it out"
+        )));
+    }
+    let text = if args.json {
+        format!("{}\n", serde_json::to_string_pretty(&report)?)
+    } else {
+        report::design::design(&report)
+    };
+    output::print(&text)?;
+    // Scripts have the chart's points, and get the picture if they ask for it.
+    let Some(hand) = report.hand.filter(|_| !args.json || args.out.is_some()) else { return Ok(()) };
+    let folder = args.out.as_ref().unwrap_or(&args.run);
+    let title = format!("free closing: {} · {} · seed {}", report.experiment, report.method, report.seed);
+    write_closing(folder, &hand.closing_plot(&title))?;
+    if args.json {
+        return Ok(());
+    }
+    Ok(output::print(&format!("\n  {}: closing.svg, closing.png\n", folder.display()))?)
+}

@@ -1,0 +1,102 @@
+//! What is said of a design without simulating it.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use crate::sandbox::{Sandbox, without_figures};
+
+/// A sandbox with what `design` reads of the trained hand under results/, in the folder `hand`.
+fn with_hand(name: &str) -> Sandbox {
+    let sandbox = Sandbox::new(name);
+    let trained = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp");
+    fs::create_dir(sandbox.path("hand")).unwrap();
+    for file in ["experiment.toml", "design.toml"] {
+        fs::copy(trained.join(file), sandbox.path("hand").join(file)).unwrap();
+    }
+    sandbox
+}
+
+#[test]
+fn a_hand() {
+    let sandbox = with_hand("design-hand");
+    insta::assert_snapshot!(sandbox.transcript(&["design hand --out pictures/here"]));
+    assert!(String::from_utf8(sandbox.read("pictures/here/closing.svg")).unwrap().contains("motor travel (mm)"));
+    assert!(sandbox.read("pictures/here/closing.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+    assert!(!sandbox.path("hand/closing.svg").exists());
+    assert!(sandbox.run("design hand").status.success() && sandbox.path("hand/closing.svg").is_file());
+}
+
+#[test]
+fn a_gear_and_a_bar_of_many_segments() {
+    let sandbox = Sandbox::with_run("design-others");
+    sandbox.run("train bar-length --seed 3 --env-steps 4000 --set train.evaluation_episodes=2 --quiet --out bar");
+    insta::assert_snapshot!(without_figures(&sandbox.transcript(&["design run", "design bar"])));
+}
+
+#[test]
+fn a_design_as_json() {
+    let sandbox = with_hand("design-json");
+    let output = sandbox.run("design hand --json");
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(output.status.success() && !sandbox.path("hand/closing.svg").exists());
+    let radius = &printed["groups"][0];
+    assert_eq!((&radius["name"], &radius["unit"]), (&"thumb_proximal_radius".into(), &"m".into()));
+    assert_eq!(radius["values"][0], 0.008_564_134_896_126_76);
+    assert!((radius["position"][0].as_f64().unwrap() - 0.656_413).abs() < 1e-6);
+    let hand = &printed["hand"];
+    assert_eq!((&hand["tension_limit"], &hand["joints"][3]["joint"]), (&75.0.into(), &"finger_distal".into()));
+    let points = hand["closing"].as_array().unwrap();
+    assert_eq!(points[1]["travel"], 0.001);
+    assert!((points.last().unwrap()["total_tension"].as_f64().unwrap() - 75.0).abs() < 1e-6);
+
+    let with_chart = sandbox.run("design hand --json --out pictures");
+    assert_eq!(with_chart.stdout, output.stdout);
+    assert!(sandbox.path("pictures/closing.png").is_file());
+}
+
+#[test]
+fn designs_that_are_none() {
+    let sandbox = with_hand("design-damaged");
+    let sound = String::from_utf8(sandbox.read("hand/design.toml")).unwrap();
+    let radius = "values = [0.00856413489612676]";
+    let first = &sound[sound.find("[finger_distal_preload]").unwrap()..sound.find("[finger_distal_radius]").unwrap()];
+    let mut transcript = String::new();
+    for (what, text) in [
+        ("no TOML", "radius: 1".to_owned()),
+        ("another design", "[gear]\nunit = \"\"\nlimits = [0.0, 1.0]\ntotal = 1.0\ntotal_as_built = 1.0\nvalues = [1.0]\nas_built = [1.0]\n".into()),
+        ("a radius of nothing", sound.replace(radius, "values = [0.0]")),
+        ("no number", sound.replace(radius, "values = [nan]")),
+        ("two radii", sound.replace(radius, "values = [0.008, 0.008]")),
+        ("one group more", format!("{sound}\n{}", first.replace("finger_distal_preload", "gear"))),
+    ] {
+        sandbox.write("hand/design.toml", text);
+        write!(transcript, "# {what}\n{}", sandbox.refused(&["design hand"])).unwrap();
+    }
+    fs::remove_file(sandbox.path("hand/design.toml")).unwrap();
+    write!(transcript, "# no design\n{}", sandbox.refused(&["design hand", "design nowhere"])).unwrap();
+    insta::assert_snapshot!(transcript);
+}
+
+#[test]
+fn a_chart_of_what_has_none() {
+    insta::assert_snapshot!(Sandbox::with_run("design-no-chart").refused(&["design run --out pictures"]));
+}
+
+/// A folder that cannot be written costs the picture only: by then the text is printed.
+#[test]
+fn a_chart_that_cannot_be_written() {
+    let sandbox = with_hand("design-unwritable");
+    fs::create_dir(sandbox.path("hand/closing.svg")).unwrap();
+    sandbox.write("file", "");
+    for (line, error) in [
+        ("design hand", "error: `hand/closing.svg` cannot be written: "),
+        ("design hand --out file/deep", "error: cannot create file/deep: "),
+    ] {
+        let output = sandbox.run(line);
+        let (told, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(told.contains("free closing") && !told.contains("closing.png"), "{told}");
+        assert!(errors.starts_with(error) && errors.contains("hint: name another folder with --out"), "{errors}");
+    }
+}

@@ -161,6 +161,9 @@ pub(crate) struct EvalArgs {
     /// simulation goes
     #[arg(long)]
     pub(crate) native_tendons: bool,
+    /// Print the rate of success of every shape of object too
+    #[arg(long)]
+    pub(crate) per_shape: bool,
     /// Print JSON, for scripts
     #[arg(long)]
     pub(crate) json: bool,

@@ -55,7 +55,7 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         }
     }
     let _ = writeln!(text);
-    text.push_str(&evaluation(&summary.evaluation));
+    text.push_str(&evaluation(&summary.evaluation, true));
     let _ = writeln!(
         text,
         "\n  {}: design.toml, policy.safetensors, curves.svg, metrics.csv, summary.json",
@@ -70,8 +70,8 @@ pub(crate) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.decimals$} {unit}").trim_end().to_owned()
 }
 
-/// An evaluation.
-pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
+/// An evaluation; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
+pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     let line = |name: &str, m: &MeanInterval| {
         format!("  {name:<20} {:>10.2}   95 % interval [{:.2}, {:.2}]\n", m.mean, m.low, m.high)
     };
@@ -81,7 +81,9 @@ pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
     );
     text.push_str(&line("discounted return", &evaluation.discounted_return));
     text.push_str(&line("return", &evaluation.undiscounted_return));
-    for rate in &evaluation.success {
+    // The first is over all episodes.
+    let shown = if per_kind { evaluation.success.len() } else { 1 };
+    for rate in evaluation.success.iter().take(shown) {
         let name = if rate.kind == "all" { "success".to_owned() } else { format!("  {}", rate.kind) };
         let _ = writeln!(
             text,
@@ -92,6 +94,10 @@ pub(crate) fn evaluation(evaluation: &Evaluation) -> String {
             100.0 * rate.low,
             100.0 * rate.high
         );
+    }
+    if evaluation.success.len() > shown {
+        let kinds = evaluation.success.len() - shown;
+        let _ = writeln!(text, "  {:<20} --per-shape tells the rates of {kinds} shapes", "");
     }
     if evaluation.discarded_episodes > 0 {
         let _ = writeln!(text, "  {} episodes discarded: their physics failed", evaluation.discarded_episodes);
@@ -146,4 +152,45 @@ pub(crate) fn grouped(count: u64) -> String {
         text.push(digit);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwasp_lab::SuccessRate;
+
+    /// An evaluation whose success was counted by these kinds.
+    fn counted(kinds: &[&str]) -> Evaluation {
+        let figure = MeanInterval { mean: 1.0, low: 0.5, high: 1.5 };
+        let rate = |kind: &&str| SuccessRate { kind: (*kind).into(), successes: 3, episodes: 4, low: 0.3, high: 0.95 };
+        Evaluation {
+            episodes: 4,
+            seed: 9,
+            discounted_return: figure,
+            undiscounted_return: figure,
+            median_discounted_return: 1.0,
+            worst_discounted_return: 0.0,
+            discarded_episodes: 0,
+            success: kinds.iter().map(rate).collect(),
+        }
+    }
+
+    #[test]
+    fn rates_of_shapes_are_told_if_asked_for() {
+        let hand = counted(&["all", "box", "sphere"]);
+        let lines = |per_kind| -> Vec<String> {
+            let text = evaluation(&hand, per_kind);
+            text.lines().skip(3).map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+        };
+        let rate = "75.0% 3 of 4, 95 % interval [30.0, 95.0]";
+        assert_eq!(lines(true), [format!("success {rate}"), format!("box {rate}"), format!("sphere {rate}")]);
+        assert_eq!(lines(false), [format!("success {rate}"), "--per-shape tells the rates of 2 shapes".into()]);
+    }
+
+    #[test]
+    fn tasks_without_success_say_nothing_of_it() {
+        let gear = counted(&[]);
+        assert_eq!(evaluation(&gear, false), evaluation(&gear, true));
+        assert_eq!(evaluation(&gear, true).lines().count(), 3);
+    }
 }

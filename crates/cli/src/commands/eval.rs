@@ -20,10 +20,14 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
     } else {
         evaluate(saved.assembly(), &params, asked, &*executor)?
     };
+    if args.per_shape && evaluation.success.is_empty() {
+        let task = saved.assembly().spec().task.kind().name();
+        output::remark(&format!("note: {task} knows neither success nor shapes"));
+    }
     let text = if args.json {
         format!("{}\n", serde_json::to_string_pretty(&evaluation)?)
     } else {
-        report::evaluation(&evaluation)
+        report::evaluation(&evaluation, args.per_shape)
     };
     Ok(output::print(&text)?)
 }

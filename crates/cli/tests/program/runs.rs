@@ -56,6 +56,13 @@ fn an_evaluation_of_other_episodes() {
 }
 
 #[test]
+fn shapes_of_what_has_none() {
+    let output = Sandbox::with_run("eval-shapes").run("eval run --per-shape");
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "note: reach knows neither success nor shapes\n");
+}
+
+#[test]
 fn quiet_is_quiet() {
     let output = Sandbox::new("quiet").run(&format!("{TINY} --quiet"));
     assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");

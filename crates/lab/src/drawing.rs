@@ -1,5 +1,6 @@
 //! What pictures of an experiment say: its law as a graph, and the texts of its curves.
 
+use hwasp_core::unit;
 use hwasp_diff::GraphStyle;
 
 use crate::assemble::Assembly;
@@ -30,11 +31,14 @@ impl Assembly {
             vec![PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }];
         let groups = self.policy.space().groups();
         for ((column, group), optimum) in self.total_names().into_iter().zip(groups).zip(&self.problem.optimum) {
-            let label = if group.count == 1 { group.name.clone() } else { format!("total {}", group.name) };
+            let name = group.name.replace('_', " ");
+            let label = if group.count == 1 { name } else { format!("total {name}") };
+            let most = group.hi * group.count as f64;
+            let shown = unit(group.dimension.si()).map_or("", |unit| unit.readable(most).symbol);
             // The curve shows the design as trained; the optimum is of the design as built.
             let same = self.trains_what_is_built();
             let optimum = optimum.filter(|_| same);
-            panels.push(PanelText { column, label, unit: group.dimension.si().into(), optimum });
+            panels.push(PanelText { column, label, unit: shown.into(), optimum });
         }
         PlotOptions { title, panels, ..PlotOptions::default() }
     }

@@ -155,6 +155,41 @@ fn runs_with_hardly_any_rows_are_drawn() {
     assert!(render_png(&curves(&[same], &options()).unwrap(), 1.0).is_ok());
 }
 
+/// Where the widest label of a tick begins, and where the text of the axis stands, px from the left.
+fn left_of_axes(svg: &str) -> (f64, f64) {
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let nodes = || document.descendants().filter(|n| n.tag_name().name() == "text");
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    // Ticks end before the axis; digits of the font are 0.64 of its size wide.
+    let ticks = nodes().filter(|n| n.attribute("text-anchor") == Some("end"));
+    let labels =
+        ticks.map(|n| number(n.attribute("x").unwrap()) - 0.64 * 11.0 * n.text().unwrap().chars().count() as f64);
+    let upward = nodes().filter_map(|n| n.attribute("transform").and_then(|t| t.strip_prefix("translate(")));
+    let texts = upward.map(|t| number(t.split(' ').next().unwrap()));
+    (labels.fold(f64::INFINITY, f64::min), texts.fold(f64::INFINITY, f64::min))
+}
+
+#[test]
+fn wide_labels_do_not_reach_the_text_of_the_axis() {
+    let mut fine = run("HWasP", 30, 0.0);
+    fine.discounted_return.iter_mut().enumerate().for_each(|(i, value)| *value = -0.01 - 2e-6 * i as f64);
+    let picture = curves(&[Curve { totals: Vec::new(), ..fine }], &options()).unwrap().svg;
+    assert!(has_text(&picture, "\u{2212}0.01005"), "{:?}", texts(&picture));
+    let (labels, text) = left_of_axes(&picture);
+    assert!(text > 8.0 && labels > text + 3.0, "labels begin at {labels}, the text stands at {text}");
+}
+
+#[test]
+fn designs_are_drawn_in_the_unit_that_is_asked_for() {
+    let radius = |i: u32| 0.004 + 0.0001 * f64::from(i);
+    let run = Curve { totals: vec![("radius".into(), (0..20).map(radius).collect())], ..run("HWasP", 20, 0.0) };
+    let panel = PanelText { column: "radius".into(), label: "radius".into(), unit: "mm".into(), optimum: Some(0.005) };
+    let picture = curves(&[run], &PlotOptions { panels: vec![panel], ..options() }).unwrap().svg;
+    for text in ["radius (mm)", "4.5", "5"] {
+        assert!(has_text(&picture, text), "`{text}` is not among {:?}", texts(&picture));
+    }
+}
+
 #[test]
 fn long_runs_stay_small() {
     let picture = svg(&[run("long", 200_000, 0.0)]);

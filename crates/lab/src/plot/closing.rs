@@ -19,7 +19,7 @@ pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) ->
         Some(Shape::Single(Line { raw: Vec::new(), smooth }))
     };
     let digit = |finger: bool, p: &ClosingPoint| -> FreeClosing { if finger { p.finger } else { p.thumb } };
-    let angle = |finger: bool, joint: usize| line(&move |p| digit(finger, p).angles[joint].to_degrees());
+    let angle = |finger: bool, joint: usize| line(&move |p| digit(finger, p).angles[joint]);
     let shapes = |lines: Vec<(usize, Option<Shape>)>| {
         let mut shapes: Vec<Option<Shape>> = Vec::new();
         shapes.resize_with(SECOND_ROUND + FINGER + 1, || None);
@@ -56,7 +56,7 @@ pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) ->
         title,
         untitled: "free closing",
         reference: "the motor's limit",
-        explanation: "free closing, without gravity and object. Angles: full lines are proximal joints, broken ones distal joints; \
+        explanation: "without gravity and object; angles: full lines are proximal joints, broken ones distal joints; \
                       0 is open"
             .to_owned(),
     };

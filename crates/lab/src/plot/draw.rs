@@ -1,6 +1,6 @@
 //! The page: title, legend, panels side by side, and a line that says what the strokes mean.
 
-use super::panel::{AREA, GREY, INK, MARGINS, OPTIMUM, Panel, colour, stroke};
+use super::panel::{AREA, GREY, INK, MARGINS, OPTIMUM, Panel, Site, colour, left_margin, stroke};
 use super::svg::{Anchor, Svg, text_width};
 use super::{Band, PlotOptions};
 
@@ -33,21 +33,16 @@ const SWATCH: f64 = 24.0;
 
 /// Draws everything.
 pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) -> String {
-    let (left, top, right, bottom) = MARGINS;
+    let ((label_at, left), (top, right, bottom)) = (left_margin(panels), MARGINS);
     let cell = (left + AREA.0 + right, top + AREA.1 + bottom);
-    let columns = match panels.len() {
-        n @ 0..=3 => n.max(1),
-        4 => 2,
-        _ => 3,
-    };
-    let width = cell.0 * columns as f64;
+    let rows = Rows::of(panels.len());
+    let width = cell.0 * rows.columns as f64;
     let reach = width - left - 12.0;
     let title = cut(page.title, TITLE_SIZE, reach);
     let legend = Legend::lay_out(panels, entries, page.reference, reach);
     let title_end = if title.is_empty() { 8.0 } else { 32.0 };
     let panels_start = title_end + legend.height() + 6.0;
-    let rows = panels.len().div_ceil(columns);
-    let panels_end = panels_start + cell.1 * rows as f64;
+    let panels_end = panels_start + cell.1 * rows.count as f64;
     let height = panels_end + 20.0;
 
     let mut svg = Svg::new(width, height, if title.is_empty() { page.untitled } else { &title });
@@ -56,11 +51,47 @@ pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) 
     }
     legend.draw(&mut svg, (left, title_end));
     for (place, panel) in panels.iter().enumerate() {
-        let corner = ((place % columns) as f64 * cell.0 + left, (place / columns) as f64 * cell.1 + panels_start + top);
-        panel.draw(&mut svg, corner);
+        let (row, column, cells) = rows.site(place);
+        let corner = (column as f64 * cell.0 + left, row as f64 * cell.1 + panels_start + top);
+        let area = (AREA.0 + (cells - 1) as f64 * cell.0, AREA.1);
+        panel.draw(&mut svg, Site { corner, area, label_at });
     }
     svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &page.explanation);
     svg.finish()
+}
+
+/// How panels are arranged.
+#[derive(Debug, PartialEq)]
+struct Rows {
+    columns: usize,
+    count: usize,
+    /// Whether the first panel, the return's, has a row to itself.
+    header: bool,
+}
+
+impl Rows {
+    /// The hand's twelve parameters are three quantities of four joints: a row each, under the return. So are other numbers
+    /// of groups that fill rows of four; up to four panels, and what fills no such rows, are simply laid side by side.
+    fn of(panels: usize) -> Self {
+        let header = panels > 5 && (panels - 1).is_multiple_of(4);
+        let columns = match panels {
+            n @ 0..=3 => n.max(1),
+            4 => 2,
+            _ if header => 4,
+            _ => 3,
+        };
+        let count = if header { 1 + (panels - 1) / 4 } else { panels.div_ceil(columns) };
+        Self { columns, count, header }
+    }
+
+    /// Row and column of a panel, and how many columns it takes.
+    fn site(&self, place: usize) -> (usize, usize, usize) {
+        match place {
+            0 if self.header => (0, 0, self.columns),
+            _ if self.header => (1 + (place - 1) / self.columns, (place - 1) % self.columns, 1),
+            _ => (place / self.columns, place % self.columns, 1),
+        }
+    }
 }
 
 /// What lines and bands mean, for whoever meets the picture without its text.
@@ -164,4 +195,26 @@ fn cut(text: &str, size: f64, room: f64) -> String {
         }
     }
     format!("{}…", short.trim_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hands_joints_are_columns_under_the_return() {
+        let hand = Rows::of(13);
+        assert_eq!(hand, Rows { columns: 4, count: 4, header: true });
+        assert_eq!(
+            [0, 1, 4, 5, 12].map(|place| hand.site(place)),
+            [(0, 0, 4), (1, 0, 1), (1, 3, 1), (2, 0, 1), (3, 3, 1)]
+        );
+    }
+
+    #[test]
+    fn few_panels_are_side_by_side() {
+        let sizes = [1, 2, 3, 4, 5, 7].map(|panels| (Rows::of(panels).columns, Rows::of(panels).count));
+        assert_eq!(sizes, [(1, 1), (2, 1), (3, 1), (2, 2), (3, 2), (3, 3)]);
+        assert_eq!(Rows::of(5).site(4), (1, 1, 1));
+    }
 }

@@ -101,9 +101,10 @@ pub struct PanelText {
     pub column: String,
     /// What is measured, such as `total stiffness`.
     pub label: String,
-    /// Its SI symbol, such as `N/m`; empty for a pure number.
+    /// The symbol of the unit to draw it in, such as `N/m` or `mm`; empty for a pure number. Values are brought to it from
+    /// SI; one that is not known is taken for SI.
     pub unit: String,
-    /// A known optimum, drawn as a dashed line.
+    /// A known optimum, SI, drawn as a dashed line.
     pub optimum: Option<f64>,
 }
 

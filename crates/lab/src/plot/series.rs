@@ -37,6 +37,29 @@ pub(super) enum Shape {
     Separate(Vec<Line>),
 }
 
+impl Shape {
+    /// Brings every value to a unit of this many SI ones.
+    pub(super) fn divide(&mut self, to_si: f64) {
+        let divide = |points: &mut Vec<Point>| points.iter_mut().for_each(|point| point.1 /= to_si);
+        let lines = match self {
+            Self::Nothing => return,
+            Self::Single(line) => std::slice::from_mut(line),
+            Self::Separate(lines) => lines,
+            Self::Summary { centre, band } => {
+                divide(centre);
+                for side in band {
+                    (side.1, side.2) = (side.1 / to_si, side.2 / to_si);
+                }
+                return;
+            }
+        };
+        for line in lines {
+            divide(&mut line.raw);
+            divide(&mut line.smooth);
+        }
+    }
+}
+
 /// Something that the picture does not show; it prints as a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {

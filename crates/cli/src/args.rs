@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use hwasp_lab::play;
 use hwasp_lab::plot::XAxis;
 use hwasp_lab::spec::Method;
 
@@ -47,6 +48,8 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
     Design(DesignArgs),
+    /// Draw grasps of a run: held-out episodes as films, and on one sheet (in builds with the feature `renderer`)
+    Play(PlayArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
     /// Train methods against each other, several seeds each under one budget, and say which is better
@@ -181,6 +184,36 @@ pub(crate) struct DesignArgs {
     pub(crate) json: bool,
 }
 
+#[derive(Debug, clap::Args)]
+pub(crate) struct PlayArgs {
+    /// A run folder of a grasping problem, as `hwasp train` writes one
+    pub(crate) run: PathBuf,
+    /// Episodes
+    #[arg(long, default_value = "4", allow_negative_numbers = true, value_parser = whole(1..=play::MOST_EPISODES))]
+    pub(crate) episodes: u64,
+    /// The first of them, counted as `hwasp eval` runs them
+    #[arg(long, value_name = "INDEX", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=MOST_EPISODES))]
+    pub(crate) first: u64,
+    /// Root seed of their starts [default: what the experiment says]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
+    pub(crate) seed: Option<u64>,
+    /// Play under another value of the experiment, such as `task.disturbance_force="0.2 N"`; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// On the hand with the engine's own tendons and springs, as `hwasp eval` does
+    #[arg(long)]
+    pub(crate) native_tendons: bool,
+    /// The folder of the pictures; those of the same name are replaced [default: play/ in the run folder]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    /// Pixels across of a picture
+    #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
+    pub(crate) width: u64,
+    /// Pixels down of a picture
+    #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
+    pub(crate) height: u64,
+}
+
 /// A horizontal axis.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum AxisArg {
@@ -270,6 +303,11 @@ pub(crate) struct GraphArgs {
     /// The drawing, .svg, or .dot or .gv for Graphviz [default: Graphviz DOT on standard output]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// Reads a side of a picture.
+fn side() -> impl Fn(&str) -> Result<u64, String> + Clone {
+    whole(play::SIDES[0]..=play::SIDES[1])
 }
 
 /// Reads a whole number within limits; as in experiment files `4e6` and `4_000_000` are such.

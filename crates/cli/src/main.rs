@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         Command::Train(train) => commands::train::run(train),
         Command::Eval(eval) => commands::eval::run(eval),
         Command::Design(design) => commands::design::run(design),
+        Command::Play(play) => commands::play::run(play),
         Command::Plot(plot) => commands::plot::run(plot),
         Command::Compare(compare) => commands::compare::run(compare),
         Command::Reproduce(reproduce) => commands::reproduce::run(reproduce),

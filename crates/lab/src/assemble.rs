@@ -53,6 +53,12 @@ pub enum AssembleError {
         /// The problem.
         problem: &'static str,
     },
+    /// A problem in which nothing is grasped.
+    #[error("{problem} has no grasps to look at; z-grasp and 3d-grasp have")]
+    NoGrasp {
+        /// The problem.
+        problem: &'static str,
+    },
     /// A search whose budget does not hold one generation.
     #[error(
         "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \

@@ -1,6 +1,7 @@
 //! Evaluation: the deterministic policy on held-out starts, on the hardware as built.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
@@ -139,12 +140,9 @@ pub fn evaluate_in(
     (episodes, seed): (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    let policy = assembly.fixed_in(world, design, false)?;
-    let sampler = Sampler::new(Arc::new(policy), Arc::clone(&world.make), None);
+    let sampler = sampler(assembly, world, design)?;
     let controller = assembly.policy.controller_params(params);
-    let kind = EpisodeKind::Evaluation;
-    let episodes_asked = Episodes { seed, iteration: 0, indices: 0..episodes, progress: 1.0, kind };
-    let batch = sampler.collect(executor, controller, &episodes_asked)?;
+    let batch = sampler.collect(executor, controller, &held_out(seed, 0..episodes))?;
     let discounted = batch.returns(assembly.spec().discount());
     let mut stream = Stream::seed_from_u64(seed);
     let sample = Sample::new(&discounted)?;
@@ -158,6 +156,19 @@ pub fn evaluate_in(
         discarded_episodes: batch.faults.len() as u64,
         success: success_rates(&batch),
     })
+}
+
+/// The deterministic controller on the hardware of `design` in a world; for [`HardwarePolicy::controller_params`].
+///
+/// [`HardwarePolicy::controller_params`]: hwasp_core::HardwarePolicy::controller_params
+pub(crate) fn sampler(assembly: &Assembly, world: &World, design: &[f64]) -> Result<Sampler, AssembleError> {
+    let policy = assembly.fixed_in(world, design, false)?;
+    Ok(Sampler::new(Arc::new(policy), Arc::clone(&world.make), None))
+}
+
+/// Episodes that training never sees.
+pub(crate) fn held_out(seed: u64, indices: Range<u64>) -> Episodes {
+    Episodes { seed, iteration: 0, indices, progress: 1.0, kind: EpisodeKind::Evaluation }
 }
 
 fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {

@@ -12,6 +12,7 @@ mod drawing;
 mod evaluate;
 pub mod metrics;
 mod observer;
+pub mod play;
 pub mod plot;
 mod policy_file;
 mod run_folder;

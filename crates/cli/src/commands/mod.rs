@@ -6,6 +6,7 @@ pub(crate) mod design;
 pub(crate) mod eval;
 pub(crate) mod graph;
 pub(crate) mod list;
+pub(crate) mod play;
 pub(crate) mod plot;
 pub(crate) mod reproduce;
 pub(crate) mod train;

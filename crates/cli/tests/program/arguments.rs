@@ -11,6 +11,7 @@ fn commands_and_arguments_that_do_not_exist() {
         "train reach --method foo",
         "train reach mass-spring",
         "eval",
+        "play",
         "plot",
     ]);
     insta::assert_snapshot!(refused);
@@ -33,6 +34,11 @@ fn numbers_that_are_none_or_outside_of_their_limits() {
         "eval run --episodes 0",
         "eval run --episodes 1e12",
         "eval run --seed x",
+        "play run --episodes 0",
+        "play run --episodes 65",
+        "play run --first -1",
+        "play run --width 100",
+        "play run --height 641",
     ]);
     insta::assert_snapshot!(refused);
 }

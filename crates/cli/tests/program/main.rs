@@ -11,5 +11,6 @@ mod experiments;
 mod folders;
 mod help;
 mod pipes;
+mod play;
 mod runs;
 mod sandbox;

@@ -82,6 +82,25 @@ impl Assembly {
         };
         native(settings, spec, design)
     }
+
+    /// What the experiment says of its grasps, if it is about any.
+    pub(crate) fn grasp_problem(&self) -> Result<&GraspProblem, AssembleError> {
+        match &self.spec().task.problem {
+            Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings) => Ok(settings),
+            _ => Err(AssembleError::NoGrasp { problem: self.spec().task.kind().name() }),
+        }
+    }
+
+    /// The grasping task by itself, whose episodes can be looked at: that of training and evaluation, or with a `native`
+    /// design (SI) that of [`Self::native`].
+    #[cfg(feature = "mujoco")]
+    pub fn grasp(&self, native: Option<&[f64]>) -> Result<hwasp_mujoco::grasp::Grasp, AssembleError> {
+        let settings = grasp_settings(self.grasp_problem()?, self.spec());
+        Ok(match native {
+            None => hwasp_mujoco::grasp::Grasp::new(settings)?,
+            Some(design) => hwasp_mujoco::grasp::Grasp::native(settings, &std::array::from_fn(|i| design[i]))?,
+        })
+    }
 }
 
 #[cfg(not(feature = "mujoco"))]

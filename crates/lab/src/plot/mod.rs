@@ -9,10 +9,10 @@
 mod axis;
 mod closing;
 mod draw;
-mod output;
+pub(crate) mod output;
 mod panel;
 mod series;
-mod svg;
+pub(crate) mod svg;
 
 use crate::metrics::{MetricsRow, MetricsTable};
 use crate::stats::StatsError;

@@ -23,13 +23,16 @@ pub fn write_plot(path: &Path, plot: &Plot) -> Result<(), PlotError> {
     std::fs::write(path, bytes).map_err(|source| PlotError::Write { path: path.to_owned(), source })
 }
 
-/// The plot as the bytes of a PNG file, `scale` pixels for each of the SVG's.
-pub fn render_png(plot: &Plot, scale: f32) -> Result<Vec<u8>, PlotError> {
+/// How texts are drawn in pixels: in the embedded font alone.
+pub(crate) fn embedded_font() -> usvg::Options<'static> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(FONT.to_vec());
-    let options =
-        usvg::Options { fontdb: Arc::new(fonts), font_family: "DejaVu Sans".to_owned(), ..usvg::Options::default() };
-    let tree = usvg::Tree::from_str(&plot.svg, &options).map_err(|e| PlotError::Render(e.to_string()))?;
+    usvg::Options { fontdb: Arc::new(fonts), font_family: "DejaVu Sans".to_owned(), ..usvg::Options::default() }
+}
+
+/// The plot as the bytes of a PNG file, `scale` pixels for each of the SVG's.
+pub fn render_png(plot: &Plot, scale: f32) -> Result<Vec<u8>, PlotError> {
+    let tree = usvg::Tree::from_str(&plot.svg, &embedded_font()).map_err(|e| PlotError::Render(e.to_string()))?;
     let (width, height) = ((tree.size().width() * scale).round(), (tree.size().height() * scale).round());
     let possible = |side: f32| (1.0..=MOST_PIXELS).contains(&side);
     let pixels =

@@ -7,7 +7,7 @@ const FONTS: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
 
 /// Where a text stands against its position.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Start,
     Middle,
     End,
@@ -15,63 +15,76 @@ pub(super) enum Anchor {
 
 /// A picture in the making; lengths in pixels, y downwards.
 #[derive(Debug)]
-pub(super) struct Svg {
+pub(crate) struct Svg {
     text: String,
 }
 
 impl Svg {
     /// A white page with a title for readers of screens.
-    pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
+    pub(crate) fn new(width: f64, height: f64, title: &str) -> Self {
+        let mut page = Self::transparent(width, height, title);
+        let (w, h) = (px(width), px(height));
+        page.push(format_args!("<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n"));
+        page
+    }
+
+    /// A page to lay over another picture.
+    pub(crate) fn transparent(width: f64, height: f64, title: &str) -> Self {
         let (w, h) = (px(width), px(height));
         let mut text = String::new();
         push(
             &mut text,
             format_args!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-                 role=\"img\" font-family=\"{FONTS}\">\n<title>{}</title>\n<rect width=\"{w}\" height=\"{h}\" \
-                 fill=\"#ffffff\"/>\n",
+                 role=\"img\" font-family=\"{FONTS}\">\n<title>{}</title>\n",
                 escape(title)
             ),
         );
         Self { text }
     }
 
+    /// A rectangle from its upper left corner.
+    pub(crate) fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), style: &str) {
+        let (x, y, width, height) = (px(x), px(y), px(width), px(height));
+        self.push(format_args!("<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {style}/>\n"));
+    }
+
     /// A straight line.
-    pub(super) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), style: &str) {
+    pub(crate) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), style: &str) {
         let (x1, y1, x2, y2) = (px(x1), px(y1), px(x2), px(y2));
         self.push(format_args!("<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\" {style}/>\n"));
     }
 
     /// A broken line through the points.
-    pub(super) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
+    pub(crate) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
         let points = joined(points.iter().copied());
         self.push(format_args!("<polyline points=\"{points}\" fill=\"none\" stroke-linejoin=\"round\" {style}/>\n"));
     }
 
     /// A filled area.
-    pub(super) fn polygon(&mut self, points: impl Iterator<Item = (f64, f64)>, style: &str) {
+    pub(crate) fn polygon(&mut self, points: impl Iterator<Item = (f64, f64)>, style: &str) {
         let points = joined(points);
         self.push(format_args!("<polygon points=\"{points}\" {style}/>\n"));
     }
 
     /// A dot.
-    pub(super) fn dot(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
+    pub(crate) fn dot(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
         self.push(format_args!("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {style}/>\n", px(x), px(y), px(radius)));
     }
 
     /// A line of text whose baseline is at `y`.
-    pub(super) fn text(&mut self, (x, y): (f64, f64), size: f64, anchor: Anchor, fill: &str, text: &str) {
+    pub(crate) fn text(&mut self, (x, y): (f64, f64), size: f64, anchor: Anchor, fill: &str, text: &str) {
         self.place(format_args!("x=\"{}\" y=\"{}\"", px(x), px(y)), size, anchor, fill, text);
     }
 
     /// A line of text that reads upwards, centred on the position.
-    pub(super) fn upward_text(&mut self, (x, y): (f64, f64), size: f64, fill: &str, text: &str) {
+    pub(crate) fn upward_text(&mut self, (x, y): (f64, f64), size: f64, fill: &str, text: &str) {
         let place = format!("transform=\"translate({} {}) rotate(-90)\"", px(x), px(y));
         self.place(format_args!("{place}"), size, Anchor::Middle, fill, text);
     }
 
     /// The whole document.
-    pub(super) fn finish(mut self) -> String {
+    pub(crate) fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");
         self.text
     }
@@ -94,7 +107,7 @@ impl Svg {
 }
 
 /// The width of a text in the embedded font, near enough to lay out a legend, in pixels.
-pub(super) fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let em = |c: char| match c {
         'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | ' ' => 0.32,
         'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '-' => 0.4,

@@ -13,12 +13,16 @@ mod edit;
 mod fault;
 mod log;
 mod names;
+#[cfg(feature = "renderer")]
+mod picture;
 mod shape;
 mod simulation;
 
 pub use contact::Contact;
 pub use edit::{EditError, ModelEdit};
 pub use fault::{PhysicsFault, Warning};
-pub use names::{ActuatorId, BodyId, GeomId, JointAddress, Kind, TendonId, UnknownName};
+pub use names::{ActuatorId, BodyId, CameraId, GeomId, JointAddress, Kind, TendonId, UnknownName};
+#[cfg(feature = "renderer")]
+pub use picture::{Painter, PictureError};
 pub use shape::Shape;
 pub use simulation::{BuildError, Simulation, Wrench};

@@ -30,6 +30,10 @@ impl ActuatorId {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TendonId(pub(super) usize);
 
+/// A camera of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct CameraId(pub(super) usize);
+
 /// Where a joint stands in the state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JointAddress {
@@ -54,6 +58,8 @@ pub enum Kind {
     Actuator,
     /// A tendon.
     Tendon,
+    /// A camera.
+    Camera,
 }
 
 impl fmt::Display for Kind {
@@ -64,6 +70,7 @@ impl fmt::Display for Kind {
             Self::Joint => "joint",
             Self::Actuator => "actuator",
             Self::Tendon => "tendon",
+            Self::Camera => "camera",
         })
     }
 }
@@ -105,6 +112,11 @@ impl Simulation {
         self.look_up(Kind::Tendon, name).map(TendonId)
     }
 
+    /// The camera of that name.
+    pub fn camera(&self, name: &str) -> Result<CameraId, UnknownName> {
+        self.look_up(Kind::Camera, name).map(CameraId)
+    }
+
     /// Where the joint of that name stands in the state.
     pub fn joint(&self, name: &str) -> Result<JointAddress, UnknownName> {
         let id = self.look_up(Kind::Joint, name)?;
@@ -134,6 +146,7 @@ fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
         Kind::Joint => (MjtObjBase::mjOBJ_JOINT, model.jnt_qposadr().len()),
         Kind::Actuator => (MjtObjBase::mjOBJ_ACTUATOR, model.nactuator() as usize),
         Kind::Tendon => (MjtObjBase::mjOBJ_TENDON, model.ntendon() as usize),
+        Kind::Camera => (MjtObjBase::mjOBJ_CAMERA, model.ncam() as usize),
     }
 }
 

@@ -29,6 +29,7 @@
 //! # End
 //! Truncated after 500 steps of 10 ms. An episode whose physics fail is discarded.
 
+mod film;
 mod object;
 mod plant;
 mod script;
@@ -40,6 +41,7 @@ use std::sync::Arc;
 use hwasp_core::{Environment, Law, MakeEnvironment, Robot};
 use thiserror::Error;
 
+pub use film::{Film, Filmed, Stage, Still};
 pub use object::Object;
 pub use plant::{GraspPlant, SUBSTEPS};
 pub use script::Script;

@@ -13,20 +13,32 @@ use super::super::xml::Element;
 use super::MjcfOptions;
 use super::drive::{Drive, spring};
 
-/// A lamp above.
+/// A lamp above, in front of the hand and to the left of the camera, whose shadows tell how high things are.
 pub(super) fn light() -> Element {
-    Element::new("light").set("pos", "0.3 -0.3 1").set("dir", "-0.3 0.3 -1").set("diffuse", "0.4 0.4 0.4")
+    Element::new("light")
+        .set("pos", "0.4 -0.7 1.2")
+        .set("dir", "-0.30 0.52 -0.80")
+        .set("directional", true)
+        .set("diffuse", "0.55 0.55 0.55")
+        .set("specular", "0.2 0.2 0.2")
 }
 
-/// The view from the side, a little in front of the thumb, that shows floor, object and palm.
+/// The view from one side, a little from above and from the thumb's end, that shows the floor and the palm up to 0.4 m.
 pub(super) fn camera(hand: &HandDescription) -> Element {
-    let middle = 0.5 * hand.palm.home_height;
+    /// From the x axis towards the fingers, and up; rad.
+    const AZIMUTH: f64 = -0.55;
+    const ELEVATION: f64 = 0.28;
+    /// From the eye to the middle of the scene, m.
+    const DISTANCE: f64 = 0.78;
+    let ((sin, cos), (rise, run)) = (AZIMUTH.sin_cos(), ELEVATION.sin_cos());
+    let middle = [0.0, 0.0, 0.6 * hand.palm.home_height];
+    let towards = [run * cos, run * sin, rise];
+    let eye = [0, 1, 2].map(|i| middle[i] + DISTANCE * towards[i]);
     Element::new("camera")
         .set("name", CAMERA)
-        .set_all("pos", &[0.50, -0.22, middle + 0.10])
-        // Level, and aimed at the middle between palm and floor.
-        .set("xyaxes", "0.22 0.5 0 -0.05 0.022 0.2984")
-        .set("fovy", 45)
+        .set_all("pos", &eye)
+        .set_all("xyaxes", &[-sin, cos, 0.0, -rise * cos, -rise * sin, run])
+        .set("fovy", 34)
 }
 
 /// The floor. Its sliding friction is the object's.
@@ -66,7 +78,7 @@ pub(super) fn palm(hand: &HandDescription) -> Element {
         .set("gravcomp", 1)
         .with(inertial(palm.mass, [0.0, 0.0, z], inertia))
         .with_all(slides)
-        .with(of_the_hand(shape).set("rgba", "0.35 0.37 0.40 1"))
+        .with(of_the_hand(shape).set("rgba", "0.30 0.32 0.35 1"))
 }
 
 /// Digit `index` with its two links. In the frame of a link z points along it and x is the joint's axis: closing is
@@ -96,7 +108,13 @@ fn link(hand: &HandDescription, index: usize, link: &LinkDescription, drive: &Dr
         .set("type", "capsule")
         .set_all("fromto", &[0.0, 0.0, 0.0, 0.0, 0.0, link.length])
         .set("size", link.radius);
-    let colour = if index.is_multiple_of(2) { "0.25 0.45 0.70 1" } else { "0.45 0.65 0.85 1" };
+    // The thumb red, the fingers blue; distal links paler.
+    let colour = match index {
+        0 => "0.74 0.24 0.16 1",
+        1 => "0.92 0.45 0.34 1",
+        _ if index.is_multiple_of(2) => "0.13 0.36 0.62 1",
+        _ => "0.36 0.60 0.85 1",
+    };
     Element::new("body")
         .set("name", LINK_BODIES[index])
         .with(inertial(link.mass, [0.0, 0.0, link.centre], link.inertia))
@@ -117,7 +135,7 @@ pub(super) fn object(hand: &HandDescription) -> Element {
         .set("condim", 4)
         .set("priority", 1)
         .set_all("friction", &[object.friction, object.torsional_friction, 0.0])
-        .set("rgba", "0.90 0.55 0.20 1");
+        .set("rgba", "0.95 0.72 0.16 1");
     Element::new("body")
         .set("name", OBJECT)
         .set_all("pos", &[0.0, 0.0, object.radius])

@@ -25,9 +25,9 @@ pub(super) fn option(hand: &HandDescription, gravity: bool) -> Element {
 /// Pictures of 640 × 480 without shadows and antialiasing, which take five times as long in software.
 pub(super) fn visual() -> Element {
     Element::new("visual")
-        .with(Element::new("global").set("offwidth", 640).set("offheight", 480))
-        .with(Element::new("quality").set("offsamples", 0).set("shadowsize", 0))
-        .with(Element::new("headlight").set("ambient", "0.4 0.4 0.4").set("diffuse", "0.5 0.5 0.5"))
+        .with(Element::new("global").set("offwidth", 640).set("offheight", 640))
+        .with(Element::new("quality").set("offsamples", 4).set("shadowsize", 2048))
+        .with(Element::new("headlight").set("ambient", "0.45 0.45 0.45").set("diffuse", "0.25 0.25 0.25"))
 }
 
 /// A plain sky, and a floor with squares, so that pictures show distances.

@@ -83,7 +83,7 @@ mod tests {
         // Dropped half-way.
         let dropped =
             steps((0..=500).map(|t| if (200..260).contains(&t) { f64::from(t - 199) * 1e-3 } else { 0.0 }), 100);
-        let named = [(0, "start"), (100, "contact"), (200, "closed"), (249, "raised 5 cm"), (374, ""), (500, "end")];
+        let named = [(0, "start"), (100, "contact"), (201, "closed"), (249, "raised 5 cm"), (374, ""), (500, "end")];
         assert_eq!(chosen(&dropped), named);
     }
 

@@ -31,14 +31,14 @@ pub(super) fn camera(hand: &HandDescription) -> Element {
     /// From the eye to the middle of the scene, m.
     const DISTANCE: f64 = 0.78;
     let ((sin, cos), (rise, run)) = (AZIMUTH.sin_cos(), ELEVATION.sin_cos());
-    let middle = [0.0, 0.0, 0.58 * hand.palm.home_height];
+    let middle = [0.0, 0.0, 0.6 * hand.palm.home_height];
     let towards = [run * cos, run * sin, rise];
     let eye = [0, 1, 2].map(|i| middle[i] + DISTANCE * towards[i]);
     Element::new("camera")
         .set("name", CAMERA)
         .set_all("pos", &eye)
         .set_all("xyaxes", &[-sin, cos, 0.0, -rise * cos, -rise * sin, run])
-        .set("fovy", 30)
+        .set("fovy", 32)
 }
 
 /// The floor. Its sliding friction is the object's.

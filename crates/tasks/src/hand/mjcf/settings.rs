@@ -28,7 +28,7 @@ pub(super) fn visual() -> Element {
     Element::new("visual")
         .with(Element::new("global").set("offwidth", 640).set("offheight", 640))
         .with(Element::new("quality").set("offsamples", 4).set("shadowsize", 2048))
-        .with(Element::new("map").set("shadowclip", 0.4))
+        .with(Element::new("map").set("shadowclip", 0.5))
         .with(Element::new("headlight").set("ambient", "0.45 0.45 0.45").set("diffuse", "0.25 0.25 0.25"))
 }
 

@@ -91,6 +91,9 @@ pub trait Task: Send {
     /// Names, units and limits. The horizon in it is the task's own.
     fn spec(&self) -> EnvSpec;
 
+    /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
+    fn set_progress(&mut self, _progress: f64) {}
+
     /// Puts the plant into a start state drawn from `rng`.
     fn reset(&mut self, plant: &mut Self::Plant, rng: &mut Stream);
 
@@ -115,6 +118,9 @@ pub trait Task: Send {
 pub trait Environment: Send {
     /// Names, units, limits and horizon.
     fn spec(&self) -> &EnvSpec;
+
+    /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
+    fn set_progress(&mut self, _progress: f64) {}
 
     /// Starts an episode.
     fn reset(&mut self, rng: &mut Stream);
@@ -174,6 +180,10 @@ impl<T: Task> Robot<T> {
 impl<T: Task> Environment for Robot<T> {
     fn spec(&self) -> &EnvSpec {
         &self.spec
+    }
+
+    fn set_progress(&mut self, progress: f64) {
+        self.task.set_progress(progress);
     }
 
     fn reset(&mut self, rng: &mut Stream) {

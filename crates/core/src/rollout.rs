@@ -107,7 +107,7 @@ pub struct Episodes {
     pub iteration: u64,
     /// Indices of the episodes.
     pub indices: Range<u64>,
-    /// Fraction of training done, for schedules of the noise.
+    /// Fraction of training done, for schedules of noise and task.
     pub progress: f64,
     /// Training episodes explore; evaluation episodes start from held-out seeds.
     pub kind: EpisodeKind,
@@ -217,6 +217,7 @@ impl<'p> Lanes<'p> {
         let mut environments = environments;
         let named = |purpose, index| stream(episodes.seed, purpose, episodes.iteration, index);
         for (environment, index) in environments.iter_mut().zip(episodes.indices.clone()) {
+            environment.set_progress(episodes.progress);
             environment.reset(&mut named(reset, index));
         }
         let count = environments.len();

@@ -26,6 +26,10 @@ impl Environment for Timed {
         self.inner.spec()
     }
 
+    fn set_progress(&mut self, progress: f64) {
+        self.inner.set_progress(progress);
+    }
+
     fn reset(&mut self, rng: &mut Stream) {
         self.inner.reset(rng);
     }

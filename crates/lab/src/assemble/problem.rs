@@ -116,7 +116,7 @@ fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, Assemb
 
 #[cfg(feature = "mujoco")]
 fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
-    use hwasp_mujoco::grasp::{GraspReward, GraspSettings, Inertia, ShapeKind};
+    use hwasp_mujoco::grasp::{Curriculum, GraspReward, GraspSettings, Inertia, ShapeKind};
     use hwasp_tasks::hand::PalmMotion;
 
     let starts = initial(spec);
@@ -144,6 +144,7 @@ fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSe
         inertia: p.inertia.map_or(Inertia::Physical, |span| Inertia::Independent(span.ends())),
         height: p.height.ends(),
         offset: p.offset,
+        curriculum: p.offset_initial.map(|offset| Curriculum { offset, progress: p.offset_growth }),
         yaw: p.yaw,
         lying: p.lying,
         sensor_noise: [p.position_noise, p.travel_noise],

@@ -69,6 +69,8 @@ pub struct SpanSpec {
 /// | `inertia` | 1e-4 to 5e-3 | each principal moment, kg·m²; or "physical", from mass, shape and size | 1e-7 to 1 |
 /// | `height` | 150 to 250 mm | of the palm above the object's top at the start | 0 to 400 mm |
 /// | `offset` | "0 mm" (3d-grasp: "50 mm") | the object's place in x and y, ± | 0 to 100 mm |
+/// | `offset_initial` | "none" | the same at the start of training, from where it grows: a curriculum | 0 to 100 mm |
+/// | `offset_growth` | [0.1, 0.6] | from and to which fraction of training it grows | 0 to 1, in order |
 /// | `yaw` | "0 rad" | the object's turn about the vertical, ± | 0 to 4 rad |
 /// | `lying` | 0.0 | share of cylinders that lie on their side | 0 to 1 |
 /// | `position_noise` | "1 mm" | standard deviation of sensed positions and of the palm's target | 0 to 50 mm |
@@ -99,6 +101,11 @@ pub struct GraspProblem {
     /// The object's place, ± m.
     #[serde(serialize_with = "quantity::metres")]
     pub offset: f64,
+    /// The same at the start of training, ± m; none where it does not change.
+    #[serde(serialize_with = "write_length", skip_serializing_if = "Option::is_none")]
+    pub offset_initial: Option<f64>,
+    /// From and to which fraction of training it grows.
+    pub offset_growth: [f64; 2],
     /// The object's turn, ± rad.
     #[serde(serialize_with = "quantity::radians")]
     pub yaw: f64,
@@ -141,6 +148,8 @@ impl GraspProblem {
         "inertia",
         "height",
         "offset",
+        "offset_initial",
+        "offset_growth",
         "yaw",
         "lying",
         "position_noise",
@@ -168,6 +177,8 @@ impl GraspProblem {
             },
             height: span(s, "height", length, (0.150, 0.250), &(0.0..=0.4)),
             offset: s.quantity("offset", length, if spatial { 0.05 } else { 0.0 }, &(0.0..=0.1)),
+            offset_initial: s.optional_quantity("offset_initial", length, 0.01, &(0.0..=0.1)),
+            offset_growth: s.fractions("offset_growth", [0.1, 0.6]),
             yaw: s.quantity("yaw", Dimension::Angle, 0.0, &(0.0..=4.0)),
             lying: s.number("lying", 0.0, 0.0..=1.0),
             position_noise: s.quantity("position_noise", length, 1e-3, &(0.0..=0.05)),
@@ -253,6 +264,11 @@ impl Serialize for SpanSpec {
             dimension => serializer.collect_seq(self.ends().map(|end| with_unit(end, dimension))),
         }
     }
+}
+
+#[allow(clippy::ref_option, reason = "serde's signature")]
+fn write_length<S: Serializer>(length: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    length.map(|length| with_unit(length, Dimension::Length)).serialize(serializer)
 }
 
 #[allow(clippy::ref_option, reason = "serde's signature")]

@@ -76,7 +76,7 @@ impl NoiseSpec {
             effort_final,
             design: s.number("design", 0.3, fraction.clone()),
             design_final: s.optional_number("design_final", fraction),
-            anneal: read_anneal(&mut s),
+            anneal: s.fractions("anneal", [0.25, 0.75]),
             train: s.flag("train", true),
             learning_rate_scale: s.number("learning_rate_scale", 1.0, 0.0..=1000.0),
         };
@@ -112,22 +112,6 @@ fn skim(s: &mut Section<'_>, key: &'static str) -> Option<EffortSpec> {
         s.wrong(key, node, "is not a quantity", Some("write it like \"3 N\"".into()));
     }
     None
-}
-
-fn read_anneal(s: &mut Section<'_>) -> [f64; 2] {
-    const DEFAULT: [f64; 2] = [0.25, 0.75];
-    let Some(node) = s.take("anneal") else { return DEFAULT };
-    if let Value::List(items) = &node.value
-        && let [Some(begin), Some(end)] = items.iter().map(super::tree::Node::number).collect::<Vec<_>>()[..]
-        && 0.0 <= begin
-        && begin <= end
-        && end <= 1.0
-    {
-        return [begin, end];
-    }
-    let rest = "is not a pair [begin, end] with 0 <= begin <= end <= 1";
-    s.wrong("anneal", node, rest, Some(format!("fractions of training; the default is {DEFAULT:?}")));
-    DEFAULT
 }
 
 impl Serialize for PerCommand {

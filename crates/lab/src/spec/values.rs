@@ -223,6 +223,22 @@ impl Section<'_> {
         }
     }
 
+    /// Two fractions of training, in order.
+    pub(super) fn fractions(&mut self, key: &'static str, default: [f64; 2]) -> [f64; 2] {
+        let Some(node) = self.take(key) else { return default };
+        if let Value::List(items) = &node.value
+            && let [Some(begin), Some(end)] = items.iter().map(Node::number).collect::<Vec<_>>()[..]
+            && 0.0 <= begin
+            && begin <= end
+            && end <= 1.0
+        {
+            return [begin, end];
+        }
+        let rest = "is not a pair [begin, end] with 0 <= begin <= end <= 1";
+        self.wrong(key, node, rest, Some(format!("fractions of training; the default is {default:?}")));
+        default
+    }
+
     /// Sizes of layers.
     pub(super) fn counts(
         &mut self,

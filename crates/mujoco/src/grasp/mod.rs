@@ -45,7 +45,7 @@ pub use film::{Film, Filmed, Stage, Still};
 pub use object::Object;
 pub use plant::{GraspPlant, SUBSTEPS};
 pub use script::Script;
-pub use settings::{GraspReward, GraspSettings, Inertia, ShapeKind};
+pub use settings::{Curriculum, GraspReward, GraspSettings, Inertia, ShapeKind};
 pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 
 use crate::engine::{BuildError, Simulation, UnknownName};

@@ -60,6 +60,15 @@ impl Default for GraspReward {
     }
 }
 
+/// Objects that come nearer to the limits of `offset` as training goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curriculum {
+    /// The offset at first, ± m.
+    pub offset: f64,
+    /// The fractions of training between which it grows, evenly, to what the task asks for.
+    pub progress: [f64; 2],
+}
+
 /// A grasping task.
 ///
 /// | field | default | purpose | source |
@@ -73,6 +82,7 @@ impl Default for GraspReward {
 /// | `inertia` | 1e-4 to 5e-3 kg·m² | each principal moment | \[P\] |
 /// | `height` | 150 to 250 mm | of the palm above the object's top at the start | \[M\] |
 /// | `offset` | 0 (3D: 50 mm) | the object's place, ± in x and y | \[M\] |
+/// | `curriculum` | none | a smaller offset at first | \[M\] |
 /// | `yaw`, `lying` | 0, 0 | turned by up to ±, share of cylinders on their side | \[M\] |
 /// | `sensor_noise` | 1 mm, 0.08 mm | palm and object position; motor travel | \[P\] |
 /// | `actuation_noise` | 1 mm, 0.08 mm | palm target; motor travel | \[P\] |
@@ -102,6 +112,8 @@ pub struct GraspSettings {
     pub height: [f64; 2],
     /// The object's place in x and y, ± m.
     pub offset: f64,
+    /// What is easier at first.
+    pub curriculum: Option<Curriculum>,
     /// The object's yaw, ± rad.
     pub yaw: f64,
     /// The share of cylinders that lie.
@@ -134,6 +146,7 @@ impl Default for GraspSettings {
             inertia: Inertia::Independent([1e-4, 5e-3]),
             height: [0.150, 0.250],
             offset: 0.0,
+            curriculum: None,
             yaw: 0.0,
             lying: 0.0,
             sensor_noise: [1e-3, 8e-5],
@@ -147,6 +160,13 @@ impl Default for GraspSettings {
 }
 
 impl GraspSettings {
+    /// The offset at this fraction of training, ± m.
+    pub(super) fn offset_at(&self, progress: f64) -> f64 {
+        let Some(Curriculum { offset, progress: [from, to] }) = self.curriculum else { return self.offset };
+        let done = ((progress - from) / (to - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        offset + (self.offset - offset) * done
+    }
+
     /// Whether objects can be drawn from them and a hand be moved by them.
     pub(super) fn check(&self) -> Result<(), GraspError> {
         let setting = |name, value: String, limits| Err(GraspError::Setting { name, value, limits });
@@ -177,6 +197,7 @@ impl GraspSettings {
         }
         for (name, value) in [
             ("offset", self.offset),
+            ("curriculum.offset", self.curriculum.map_or(0.0, |first| first.offset)),
             ("yaw", self.yaw),
             ("lying", self.lying),
             ("sensor_noise[0]", self.sensor_noise[0]),

@@ -34,12 +34,15 @@ pub struct GraspTask {
     moments: Vec<Moment>,
     taken: usize,
     kind: &'static str,
+    /// Where the object may lie, ± m, as far as training has come.
+    offset: f64,
 }
 
 impl GraspTask {
     pub(super) fn new(settings: GraspSettings) -> Self {
         let kind = settings.shapes[0].name();
-        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind }
+        let offset = settings.offset;
+        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind, offset }
     }
 
     /// Whether the last steps were a hold.
@@ -84,10 +87,14 @@ impl Task for GraspTask {
         EnvSpec { observation, state, effort, command, horizon: self.settings.horizon }
     }
 
+    fn set_progress(&mut self, progress: f64) {
+        self.offset = self.settings.offset_at(progress);
+    }
+
     fn reset(&mut self, plant: &mut GraspPlant, rng: &mut Stream) {
         let [from, to] = self.settings.height;
         let above = from + (to - from) * rng.random::<f64>();
-        let object = Object::draw(&self.settings, rng);
+        let object = Object::draw(&self.settings, self.offset, rng);
         self.kind = object.kind.name();
         self.taken = 0;
         let top = object.bounding_box()[2];

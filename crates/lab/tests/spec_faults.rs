@@ -49,6 +49,7 @@ wrong_files! {
     unknown_unit: "[noise]\neffort = \"3 lbf\"\n";
     no_quantity: "[noise]\neffort = \"strong\"\n";
     anneal_backwards: "[noise]\nanneal = [0.75, 0.25]\n";
+    noise_of_commands: "[noise]\ncommand = [0.3, 0.2]\ncommand_final = \"small\"\n";
     initial_outside: "[design]\ninitial = \"10 N/m\"\n";
     initial_misspelt: "[design]\ninitial = \"midle\"\n";
     placements_beyond: "[design.placements]\n\"stiffness[10]\" = \"action\"\n\"length[0]\" = \"action\"\n\"stiffness[3..3]\" = \"fixed\"\n\"stiffness[1]\" = \"grpah\"\n";

@@ -4,7 +4,7 @@
 
 use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
 use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Script, ShapeKind};
+use hwasp_mujoco::grasp::{Curriculum, Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Script, ShapeKind};
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names,
@@ -154,6 +154,27 @@ fn every_randomised_quantity_changes_the_model() {
         let varies = |values: &[f64]| values.iter().any(|v| (v - values[0]).abs() > 1e-9);
         let widened = matches!(name, "offset" | "yaw");
         assert_eq!((varies(&looks(base)), varies(&looks(changed))), (!widened, widened), "{name}");
+    }
+}
+
+/// The offset grows with training between two fractions of it, evenly; who says nothing of training gets the whole task.
+#[test]
+fn a_curriculum_begins_with_objects_near_the_middle() {
+    let curriculum = Some(Curriculum { offset: 0.01, progress: [0.2, 0.6] });
+    let settings = GraspSettings { offset: 0.05, curriculum, ..settings(ShapeKind::Box) };
+    let mut robot = Grasp::new(settings).unwrap().robot(None);
+    let mut place = |progress: Option<f64>| {
+        if let Some(progress) = progress {
+            robot.set_progress(progress);
+        }
+        robot.reset(&mut rng(3));
+        robot.plant().object_position()[0]
+    };
+    let whole = place(None);
+    for (progress, offset) in [(0.0, 0.01), (0.2, 0.01), (0.3, 0.02), (0.6, 0.05), (1.0, 0.05)] {
+        let wanted = whole * offset / 0.05;
+        let found = place(Some(progress));
+        assert!((found - wanted).abs() < 1e-12 && wanted != 0.0, "{progress}: {found} is not {wanted}");
     }
 }
 

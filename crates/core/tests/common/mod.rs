@@ -122,7 +122,7 @@ pub(crate) fn env_spec() -> EnvSpec {
 pub(crate) fn noise() -> Noise {
     let spread = |std, ratio, from, to| Spread { std, anneal: Some(Anneal { ratio, from, to }) };
     Noise {
-        command: vec![spread(0.3, 0.01, 0.25, 0.75); 2],
+        command: vec![spread(0.3, 0.01, 0.25, 0.75), spread(0.2, 0.01, 0.25, 0.75)],
         effort: 2.0.into(),
         design: spread(0.4, 0.1, 0.0, 0.5),
         train: true,

@@ -209,7 +209,10 @@ impl Section<'_> {
     /// A real number for each of so many commands, or one for all; none where the key is absent, "none" or wrong.
     pub(super) fn each(&mut self, key: &'static str, length: usize, range: &RangeInclusive<f64>) -> Option<Vec<f64>> {
         let node = self.take(key).filter(|node| !is_none(node))?;
-        let hint = || format!("one number, or a list of one for each of the {length} commands");
+        let hint = || match length {
+            1 => "one number: the task has one command".to_owned(),
+            _ => format!("one number, or a list of one for each of the {length} commands"),
+        };
         match &node.value {
             Value::List(items) if items.len() == length => {
                 let checked = items.iter().map(|item| self.checked_number(key, item, range, hint()));

@@ -65,10 +65,18 @@ fn grasp(_: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
 
 #[cfg(feature = "mujoco")]
 fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
-    let grasp = hwasp_mujoco::grasp::Grasp::new(grasp_settings(p, spec))?;
+    let world = |settings| {
+        let grasp = hwasp_mujoco::grasp::Grasp::new(settings)?;
+        Ok::<_, AssembleError>(World { law: grasp.law(), make: grasp.shared() })
+    };
+    let deployment = grasp_settings(p, spec);
+    // What lifts more than it has to is safe where it has to.
+    let training = hwasp_mujoco::grasp::GraspSettings {
+        mass: deployment.mass.map(|mass| mass * p.safety_factor),
+        ..deployment.clone()
+    };
     let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
-    let world = World { law: grasp.law(), make: grasp.shared() };
-    Ok(Problems { training: world.clone(), deployment: world, optimum })
+    Ok(Problems { training: world(training)?, deployment: world(deployment)?, optimum })
 }
 
 impl Assembly {
@@ -91,7 +99,7 @@ impl Assembly {
         }
     }
 
-    /// The grasping task by itself, whose episodes can be looked at: that of training and evaluation, or with a `native`
+    /// The grasping task by itself, whose episodes can be looked at: that of evaluation, or with a `native`
     /// design (SI) that of [`Self::native`].
     #[cfg(feature = "mujoco")]
     pub fn grasp(&self, native: Option<&[f64]>) -> Result<hwasp_mujoco::grasp::Grasp, AssembleError> {

@@ -65,6 +65,7 @@ pub struct SpanSpec {
 /// | `shapes` | all four | of `sphere`, `box`, `cylinder`, `ellipsoid` | at least one |
 /// | `size` | 40 to 100 mm | edges of the object's bounding box | 10 to 200 mm |
 /// | `mass` | 100 to 500 g | of the object | 0.001 to 10 kg |
+/// | `safety_factor` | 1.0 | objects are heavier by it in training than those of evaluations | 1 to 10 |
 /// | `friction` | 0.5 to 1 | of the object on hand and floor | 0 to 10 |
 /// | `inertia` | 1e-4 to 5e-3 | each principal moment, kg·m²; or "physical", from mass, shape and size | 1e-7 to 1 |
 /// | `height` | 150 to 250 mm | of the palm above the object's top at the start | 0 to 400 mm |
@@ -91,6 +92,8 @@ pub struct GraspProblem {
     pub size: SpanSpec,
     /// Mass, kg.
     pub mass: SpanSpec,
+    /// How much heavier objects are in training.
+    pub safety_factor: f64,
     /// Friction.
     pub friction: SpanSpec,
     /// Each principal moment, kg·m²; none for what mass, shape and size give.
@@ -144,6 +147,7 @@ impl GraspProblem {
         "shapes",
         "size",
         "mass",
+        "safety_factor",
         "friction",
         "inertia",
         "height",
@@ -169,6 +173,7 @@ impl GraspProblem {
             shapes: read_shapes(s),
             size: span(s, "size", length, (0.040, 0.100), &(0.01..=0.2)),
             mass: span(s, "mass", Dimension::Mass, (0.1, 0.5), &(1e-3..=10.0)),
+            safety_factor: s.number("safety_factor", 1.0, 1.0..=10.0),
             friction: span(s, "friction", Dimension::None, (0.5, 1.0), &(0.0..=10.0)),
             inertia: if s.is_text("inertia", "physical") {
                 None

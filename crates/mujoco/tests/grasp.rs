@@ -4,7 +4,7 @@
 
 use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
 use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{Curriculum, Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Script, ShapeKind};
+use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Ramp, Script, ShapeKind};
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names,
@@ -157,25 +157,31 @@ fn every_randomised_quantity_changes_the_model() {
     }
 }
 
-/// The offset grows with training between two fractions of it, evenly; who says nothing of training gets the whole task.
+/// Offset and load change evenly between two fractions of training; who says nothing of training gets what comes last.
 #[test]
-fn a_curriculum_begins_with_objects_near_the_middle() {
-    let curriculum = Some(Curriculum { offset: 0.01, progress: [0.2, 0.6] });
-    let settings = GraspSettings { offset: 0.05, curriculum, ..settings(ShapeKind::Box) };
+fn what_changes_while_training_goes_on() {
+    let ramp = |first, last| Some(Ramp { first, last, progress: [0.2, 0.6] });
+    let settings = GraspSettings {
+        offset: 0.05,
+        offset_ramp: ramp(0.01, 0.05),
+        load_ramp: ramp(1.0, 1.5),
+        ..settings(ShapeKind::Box)
+    };
     let mut robot = Grasp::new(settings).unwrap().robot(None);
-    let mut place = |progress: Option<f64>| {
+    let mut start = |progress: Option<f64>| {
         if let Some(progress) = progress {
             robot.set_progress(progress);
         }
         robot.reset(&mut rng(3));
-        robot.plant().object_position()[0]
+        (robot.plant().object_position()[0], robot.plant().object().mass)
     };
-    let whole = place(None);
-    for (progress, offset) in [(0.0, 0.01), (0.2, 0.01), (0.3, 0.02), (0.6, 0.05), (1.0, 0.05)] {
-        let wanted = whole * offset / 0.05;
-        let found = place(Some(progress));
-        assert!((found - wanted).abs() < 1e-12 && wanted != 0.0, "{progress}: {found} is not {wanted}");
+    let (place, mass) = start(None);
+    for (progress, offset, load) in [(0.0, 0.01, 1.0), (0.2, 0.01, 1.0), (0.3, 0.02, 1.125), (1.0, 0.05, 1.5)] {
+        let found = start(Some(progress));
+        let wanted = (place * offset / 0.05, mass * load / 1.5);
+        assert!((found.0 - wanted.0).abs() < 1e-12 && (found.1 - wanted.1).abs() < 1e-12, "{found:?} for {wanted:?}");
     }
+    assert!(place != 0.0 && mass > 0.15);
 }
 
 /// Noise and disturbances are there, and can be switched off.

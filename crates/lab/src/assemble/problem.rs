@@ -8,9 +8,9 @@ use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
 
 use super::{AssembleError, Assembly, Problems, World};
-#[cfg(feature = "mujoco")]
-use crate::spec::ObjectKind;
 use crate::spec::{GraspProblem, GroupSpec, InitialSpec, InterfaceKind, MassSpringSpec, Problem, RewardKind, Spec};
+#[cfg(feature = "mujoco")]
+use crate::spec::{ObjectKind, ViewpointKind};
 
 pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
     // Problems with one group of parameters; the hand has more.
@@ -71,10 +71,8 @@ fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
     };
     let deployment = grasp_settings(p, spec);
     // What lifts more than it has to is safe where it has to.
-    let training = hwasp_mujoco::grasp::GraspSettings {
-        mass: deployment.mass.map(|mass| mass * p.safety_factor),
-        ..deployment.clone()
-    };
+    let load = hwasp_mujoco::grasp::Ramp { first: 1.0, last: p.safety_factor, progress: p.safety_growth };
+    let training = hwasp_mujoco::grasp::GraspSettings { load_ramp: Some(load), ..deployment.clone() };
     let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
     Ok(Problems { training: world(training)?, deployment: world(deployment)?, optimum })
 }
@@ -124,7 +122,7 @@ fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, Assemb
 
 #[cfg(feature = "mujoco")]
 fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
-    use hwasp_mujoco::grasp::{Curriculum, GraspReward, GraspSettings, Inertia, ShapeKind};
+    use hwasp_mujoco::grasp::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
     use hwasp_tasks::hand::PalmMotion;
 
     let starts = initial(spec);
@@ -152,9 +150,13 @@ fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSe
         inertia: p.inertia.map_or(Inertia::Physical, |span| Inertia::Independent(span.ends())),
         height: p.height.ends(),
         offset: p.offset,
-        curriculum: p.offset_initial.map(|offset| Curriculum { offset, progress: p.offset_growth }),
+        offset_ramp: p.offset_initial.map(|first| Ramp { first, last: p.offset, progress: p.offset_growth }),
         yaw: p.yaw,
         lying: p.lying,
+        viewpoint: match p.viewpoint {
+            ViewpointKind::World => Viewpoint::World,
+            ViewpointKind::Palm => Viewpoint::Palm,
+        },
         sensor_noise: [p.position_noise, p.travel_noise],
         actuation_noise: [p.position_noise, p.travel_noise],
         disturbance: [p.disturbance_force, p.disturbance_torque],

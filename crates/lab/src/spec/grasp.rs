@@ -36,6 +36,16 @@ named! {
     }
 }
 
+named! {
+    /// From where the controller sees the object.
+    pub enum ViewpointKind {
+        /// Its place in the world.
+        World = "world",
+        /// Its place relative to the palm.
+        Palm = "palm",
+    }
+}
+
 impl From<HandRangeKind> for HandRange {
     fn from(kind: HandRangeKind) -> Self {
         match kind {
@@ -66,14 +76,16 @@ pub struct SpanSpec {
 /// | `size` | 40 to 100 mm | edges of the object's bounding box | 10 to 200 mm |
 /// | `mass` | 100 to 500 g | of the object | 0.001 to 10 kg |
 /// | `safety_factor` | 1.0 | objects are heavier by it in training than those of evaluations | 1 to 10 |
+/// | `safety_growth` | [0.3, 0.6] | between which fractions of training that factor grows from 1 | 0 to 1, in order |
 /// | `friction` | 0.5 to 1 | of the object on hand and floor | 0 to 10 |
 /// | `inertia` | 1e-4 to 5e-3 | each principal moment, kg·m²; or "physical", from mass, shape and size | 1e-7 to 1 |
 /// | `height` | 150 to 250 mm | of the palm above the object's top at the start | 0 to 400 mm |
 /// | `offset` | "0 mm" (3d-grasp: "50 mm") | the object's place in x and y, ± | 0 to 100 mm |
 /// | `offset_initial` | "none" | the same at the start of training, from where it grows: a curriculum | 0 to 100 mm |
-/// | `offset_growth` | [0.1, 0.6] | from and to which fraction of training it grows | 0 to 1, in order |
+/// | `offset_growth` | [0.1, 0.6] | between which fractions of training it grows | 0 to 1, in order |
 /// | `yaw` | "0 rad" | the object's turn about the vertical, ± | 0 to 4 rad |
 /// | `lying` | 0.0 | share of cylinders that lie on their side | 0 to 1 |
+/// | `viewpoint` | "world" | where the observed object is: in the `world`, as in the paper, or relative to the `palm` | |
 /// | `position_noise` | "1 mm" | standard deviation of sensed positions and of the palm's target | 0 to 50 mm |
 /// | `travel_noise` | "0.08 mm" | the same of the motor's travel | 0 to 5 mm |
 /// | `disturbance_force`, `disturbance_torque` | "0.02 N", "0.002 N·m" | standard deviation on palm and object, redrawn each step | 0 to 100 |
@@ -94,6 +106,8 @@ pub struct GraspProblem {
     pub mass: SpanSpec,
     /// How much heavier objects are in training.
     pub safety_factor: f64,
+    /// Between which fractions of training that factor grows from 1.
+    pub safety_growth: [f64; 2],
     /// Friction.
     pub friction: SpanSpec,
     /// Each principal moment, kg·m²; none for what mass, shape and size give.
@@ -107,13 +121,15 @@ pub struct GraspProblem {
     /// The same at the start of training, ± m; none where it does not change.
     #[serde(serialize_with = "write_length", skip_serializing_if = "Option::is_none")]
     pub offset_initial: Option<f64>,
-    /// From and to which fraction of training it grows.
+    /// Between which fractions of training it grows.
     pub offset_growth: [f64; 2],
     /// The object's turn, ± rad.
     #[serde(serialize_with = "quantity::radians")]
     pub yaw: f64,
     /// Share of cylinders that lie.
     pub lying: f64,
+    /// From where the controller sees the object.
+    pub viewpoint: ViewpointKind,
     /// Standard deviation of positions, sensed and reached, m.
     #[serde(serialize_with = "quantity::metres")]
     pub position_noise: f64,
@@ -148,6 +164,7 @@ impl GraspProblem {
         "size",
         "mass",
         "safety_factor",
+        "safety_growth",
         "friction",
         "inertia",
         "height",
@@ -156,6 +173,7 @@ impl GraspProblem {
         "offset_growth",
         "yaw",
         "lying",
+        "viewpoint",
         "position_noise",
         "travel_noise",
         "disturbance_force",
@@ -174,6 +192,7 @@ impl GraspProblem {
             size: span(s, "size", length, (0.040, 0.100), &(0.01..=0.2)),
             mass: span(s, "mass", Dimension::Mass, (0.1, 0.5), &(1e-3..=10.0)),
             safety_factor: s.number("safety_factor", 1.0, 1.0..=10.0),
+            safety_growth: s.fractions("safety_growth", [0.3, 0.6]),
             friction: span(s, "friction", Dimension::None, (0.5, 1.0), &(0.0..=10.0)),
             inertia: if s.is_text("inertia", "physical") {
                 None
@@ -186,6 +205,7 @@ impl GraspProblem {
             offset_growth: s.fractions("offset_growth", [0.1, 0.6]),
             yaw: s.quantity("yaw", Dimension::Angle, 0.0, &(0.0..=4.0)),
             lying: s.number("lying", 0.0, 0.0..=1.0),
+            viewpoint: s.choice("viewpoint", ViewpointKind::ALL).unwrap_or(ViewpointKind::World),
             position_noise: s.quantity("position_noise", length, 1e-3, &(0.0..=0.05)),
             travel_noise: s.quantity("travel_noise", length, 8e-5, &(0.0..=0.005)),
             disturbance_force: s.quantity("disturbance_force", Dimension::Force, 0.02, &(0.0..=100.0)),

@@ -40,10 +40,10 @@ pub use builtin::{EXPERIMENTS, load};
 pub use controller::{ActivationKind, ControllerSpec, MOST_LAYERS, WIDEST_LAYER};
 pub use design::{DesignSpec, InitialSpec, InitialValue, Place, PlacedRange};
 pub use fault::{Excerpt, Fault, SpecErrors};
-pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec};
+pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec, ViewpointKind};
 pub use layers::{LONGEST_FILE, Layers};
 pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec, TrpoSpec};
-pub use noise::{EffortSpec, NoiseSpec};
+pub use noise::{EffortSpec, NoiseSpec, PerCommand};
 pub use search::{ArsSpec, ArsVariant, CmaesSpec, Score, SearchSpec};
 pub use task::{
     BarProblem, GroupSpec, InterfaceKind, MOST_SEGMENTS, MOST_STEPS, MassSpringSpec, Problem, ProblemKind,

@@ -4,7 +4,7 @@
 //! | port | unit | |
 //! |---|---|---|
 //! | `palm_x`, `palm_y`, `palm_z` | m | noisy |
-//! | `object_x`, `object_y`, `object_z` | m | its centre, noisy |
+//! | `object_x`, `object_y`, `object_z` | m | its centre, noisy; relative to the palm where [`Viewpoint`] says so |
 //! | `size_x`, `size_y`, `size_z` | m | its bounding box as it lies at the start |
 //! | `motor_travel` | m | tendon wound, as commanded, noisy |
 //! | `motor_torque` | N·m | of the last step |
@@ -45,7 +45,7 @@ pub use film::{Film, Filmed, Stage, Still};
 pub use object::Object;
 pub use plant::{GraspPlant, SUBSTEPS};
 pub use script::Script;
-pub use settings::{Curriculum, GraspReward, GraspSettings, Inertia, ShapeKind};
+pub use settings::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
 pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 
 use crate::engine::{BuildError, Simulation, UnknownName};

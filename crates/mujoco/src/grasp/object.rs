@@ -32,9 +32,9 @@ fn between(range: [f64; 2], rng: &mut Stream) -> f64 {
 }
 
 impl Object {
-    /// Draws one, within ±`offset` m in x and y. Every quantity is drawn, whether its range has a width or not, so that narrowing one range leaves the
+    /// Draws one at this fraction of training. Every quantity is drawn, whether its range has a width or not, so that narrowing one range leaves the
     /// other draws as they were; the inertia is last, as it may be drawn more than once.
-    pub fn draw(settings: &GraspSettings, offset: f64, rng: &mut Stream) -> Self {
+    pub fn draw(settings: &GraspSettings, progress: f64, rng: &mut Stream) -> Self {
         let kinds = &settings.shapes;
         let kind = kinds[(rng.random::<f64>() * kinds.len() as f64) as usize % kinds.len()];
         let drawn: [f64; 3] = std::array::from_fn(|_| between(settings.size, rng));
@@ -43,8 +43,9 @@ impl Object {
             ShapeKind::Cylinder => [drawn[0], drawn[0], drawn[2]],
             ShapeKind::Box | ShapeKind::Ellipsoid => drawn,
         };
-        let mass = between(settings.mass, rng);
+        let mass = between(settings.mass, rng) * settings.load_ramp.map_or(1.0, |ramp| ramp.at(progress));
         let friction = between(settings.friction, rng);
+        let offset = settings.offset_ramp.map_or(settings.offset, |ramp| ramp.at(progress));
         let place: [f64; 2] = std::array::from_fn(|_| between([-offset, offset], rng));
         let yaw = between([-settings.yaw, settings.yaw], rng);
         let lying = kind == ShapeKind::Cylinder && rng.random::<f64>() < settings.lying;
@@ -118,11 +119,11 @@ mod tests {
 
     #[test]
     fn what_is_drawn_lies_on_the_floor_and_in_its_ranges() {
-        let settings = GraspSettings { lying: 0.5, yaw: 1.0, ..GraspSettings::default() };
+        let settings = GraspSettings { offset: 0.05, lying: 0.5, yaw: 1.0, ..GraspSettings::default() };
         let mut rng = Stream::seed_from_u64(3);
         let mut kinds = [0; 4];
         for _ in 0..400 {
-            let object = Object::draw(&settings, 0.05, &mut rng);
+            let object = Object::draw(&settings, 1.0, &mut rng);
             kinds[ShapeKind::ALL.iter().position(|&k| k == object.kind).unwrap()] += 1;
             assert!(object.size.iter().all(|s| (0.04..=0.1).contains(s)), "{object:?}");
             assert!((0.1..=0.5).contains(&object.mass) && (0.5..=1.0).contains(&object.friction), "{object:?}");

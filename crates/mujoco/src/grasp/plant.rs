@@ -111,7 +111,7 @@ impl GraspPlant {
             actuation_noise: settings.actuation_noise,
             disturbance: settings.disturbance,
             axes: 3 - settings.palm.commands().len()..3,
-            object: Object::draw(settings, settings.offset, &mut rng),
+            object: Object::draw(settings, 1.0, &mut rng),
             target: [0.0; 3],
             travel: 0.0,
             motor_torque: 0.0,

@@ -33,6 +33,16 @@ impl ShapeKind {
     }
 }
 
+/// From where the controller sees the object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Viewpoint {
+    /// Its place in the world, as the paper has it.
+    #[default]
+    World,
+    /// Its place relative to the palm: the difference of what both sensors say.
+    Palm,
+}
+
 /// Where an object's inertia comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inertia {
@@ -60,13 +70,24 @@ impl Default for GraspReward {
     }
 }
 
-/// Objects that come nearer to the limits of `offset` as training goes on.
+/// A quantity that changes evenly while training goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Curriculum {
-    /// The offset at first, ± m.
-    pub offset: f64,
-    /// The fractions of training between which it grows, evenly, to what the task asks for.
+pub struct Ramp {
+    /// Its first value.
+    pub first: f64,
+    /// Its last.
+    pub last: f64,
+    /// The fractions of training between which it changes.
     pub progress: [f64; 2],
+}
+
+impl Ramp {
+    /// Its value at this fraction of training.
+    pub(super) fn at(&self, progress: f64) -> f64 {
+        let [from, to] = self.progress;
+        let done = ((progress - from) / (to - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        self.first + (self.last - self.first) * done
+    }
 }
 
 /// A grasping task.
@@ -82,8 +103,10 @@ pub struct Curriculum {
 /// | `inertia` | 1e-4 to 5e-3 kg·m² | each principal moment | \[P\] |
 /// | `height` | 150 to 250 mm | of the palm above the object's top at the start | \[M\] |
 /// | `offset` | 0 (3D: 50 mm) | the object's place, ± in x and y | \[M\] |
-/// | `curriculum` | none | a smaller offset at first | \[M\] |
+/// | `offset_ramp` | none | another offset while training goes on | \[M\] |
+/// | `load_ramp` | none | objects heavier by a factor while training goes on | \[M\] |
 /// | `yaw`, `lying` | 0, 0 | turned by up to ±, share of cylinders on their side | \[M\] |
+/// | `viewpoint` | world | from where the controller sees the object | \[P\] |
 /// | `sensor_noise` | 1 mm, 0.08 mm | palm and object position; motor travel | \[P\] |
 /// | `actuation_noise` | 1 mm, 0.08 mm | palm target; motor travel | \[P\] |
 /// | `disturbance` | 0.02 N, 0.002 N·m | on palm and object, redrawn each step | \[P\] |
@@ -112,12 +135,16 @@ pub struct GraspSettings {
     pub height: [f64; 2],
     /// The object's place in x and y, ± m.
     pub offset: f64,
-    /// What is easier at first.
-    pub curriculum: Option<Curriculum>,
+    /// The offset while training goes on, ± m, where it changes.
+    pub offset_ramp: Option<Ramp>,
+    /// A factor of the mass while training goes on.
+    pub load_ramp: Option<Ramp>,
     /// The object's yaw, ± rad.
     pub yaw: f64,
     /// The share of cylinders that lie.
     pub lying: f64,
+    /// From where the controller sees the object.
+    pub viewpoint: Viewpoint,
     /// Standard deviations of the sensors: positions, m, and motor travel, m.
     pub sensor_noise: [f64; 2],
     /// Standard deviations of what the actuators do: palm, m, and motor travel, m. Never accumulates.
@@ -146,9 +173,11 @@ impl Default for GraspSettings {
             inertia: Inertia::Independent([1e-4, 5e-3]),
             height: [0.150, 0.250],
             offset: 0.0,
-            curriculum: None,
+            offset_ramp: None,
+            load_ramp: None,
             yaw: 0.0,
             lying: 0.0,
+            viewpoint: Viewpoint::World,
             sensor_noise: [1e-3, 8e-5],
             actuation_noise: [1e-3, 8e-5],
             disturbance: [0.02, 0.002],
@@ -160,13 +189,6 @@ impl Default for GraspSettings {
 }
 
 impl GraspSettings {
-    /// The offset at this fraction of training, ± m.
-    pub(super) fn offset_at(&self, progress: f64) -> f64 {
-        let Some(Curriculum { offset, progress: [from, to] }) = self.curriculum else { return self.offset };
-        let done = ((progress - from) / (to - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        offset + (self.offset - offset) * done
-    }
-
     /// Whether objects can be drawn from them and a hand be moved by them.
     pub(super) fn check(&self) -> Result<(), GraspError> {
         let setting = |name, value: String, limits| Err(GraspError::Setting { name, value, limits });
@@ -197,7 +219,8 @@ impl GraspSettings {
         }
         for (name, value) in [
             ("offset", self.offset),
-            ("curriculum.offset", self.curriculum.map_or(0.0, |first| first.offset)),
+            ("offset_ramp.first", self.offset_ramp.map_or(0.0, |ramp| ramp.first)),
+            ("offset_ramp.last", self.offset_ramp.map_or(0.0, |ramp| ramp.last)),
             ("yaw", self.yaw),
             ("lying", self.lying),
             ("sensor_noise[0]", self.sensor_noise[0]),
@@ -210,6 +233,11 @@ impl GraspSettings {
             if !(value.is_finite() && value >= 0.0) {
                 return setting(name, value.to_string(), "a finite number that is not negative");
             }
+        }
+        if let Some(ramp) = self.load_ramp
+            && ![ramp.first, ramp.last].iter().all(|factor| factor.is_finite() && *factor > 0.0)
+        {
+            return setting("load_ramp", format!("{} to {}", ramp.first, ramp.last), "two positive factors");
         }
         if !(self.palm_step.is_finite() && self.palm_step > 0.0) {
             return setting("palm_step", self.palm_step.to_string(), "a positive length");

@@ -5,7 +5,7 @@ use rand::RngExt;
 
 use super::object::Object;
 use super::plant::GraspPlant;
-use super::settings::GraspSettings;
+use super::settings::{GraspSettings, Viewpoint};
 use hwasp_tasks::hand::names;
 
 /// The steps at the end of an episode over which a grasp has to hold.
@@ -34,15 +34,14 @@ pub struct GraspTask {
     moments: Vec<Moment>,
     taken: usize,
     kind: &'static str,
-    /// Where the object may lie, ± m, as far as training has come.
-    offset: f64,
+    /// How far training has come.
+    progress: f64,
 }
 
 impl GraspTask {
     pub(super) fn new(settings: GraspSettings) -> Self {
         let kind = settings.shapes[0].name();
-        let offset = settings.offset;
-        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind, offset }
+        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind, progress: 1.0 }
     }
 
     /// Whether the last steps were a hold.
@@ -88,13 +87,13 @@ impl Task for GraspTask {
     }
 
     fn set_progress(&mut self, progress: f64) {
-        self.offset = self.settings.offset_at(progress);
+        self.progress = progress;
     }
 
     fn reset(&mut self, plant: &mut GraspPlant, rng: &mut Stream) {
         let [from, to] = self.settings.height;
         let above = from + (to - from) * rng.random::<f64>();
-        let object = Object::draw(&self.settings, self.offset, rng);
+        let object = Object::draw(&self.settings, self.progress, rng);
         self.kind = object.kind.name();
         self.taken = 0;
         let top = object.bounding_box()[2];
@@ -105,6 +104,11 @@ impl Task for GraspTask {
 
     fn observe(&self, plant: &GraspPlant, out: &mut [f64]) {
         plant.observe(out);
+        if self.settings.viewpoint == Viewpoint::Palm {
+            for i in 0..3 {
+                out[3 + i] -= out[i];
+            }
+        }
     }
 
     fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {

@@ -4,7 +4,7 @@
 
 use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
 use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Ramp, Script, ShapeKind};
+use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Ramp, Script, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names,
@@ -182,6 +182,25 @@ fn what_changes_while_training_goes_on() {
         assert!((found.0 - wanted.0).abs() < 1e-12 && (found.1 - wanted.1).abs() < 1e-12, "{found:?} for {wanted:?}");
     }
     assert!(place != 0.0 && mass > 0.15);
+}
+
+/// Seen from the palm, the object is where the difference of both sensors says.
+#[test]
+fn the_object_seen_from_the_palm() {
+    let seen = |viewpoint| {
+        let settings = GraspSettings { viewpoint, offset: 0.05, ..settings(ShapeKind::Box) };
+        let mut robot = Grasp::new(settings).unwrap().robot(None);
+        robot.reset(&mut rng(1));
+        let mut seen = [0.0; 11];
+        robot.observe(&mut seen);
+        seen
+    };
+    let mut wanted = seen(Viewpoint::World);
+    for i in 0..3 {
+        wanted[3 + i] -= wanted[i];
+    }
+    assert_eq!(seen(Viewpoint::Palm), wanted);
+    assert!(wanted[3].abs() > 0.005 && wanted[5] < -0.1, "{wanted:?}");
 }
 
 /// Noise and disturbances are there, and can be switched off.

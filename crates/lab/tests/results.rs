@@ -20,9 +20,9 @@ fn trained_hands_grasp() {
         for native in [false, true] {
             let evaluate = if native { evaluate_native } else { evaluate };
             let success = evaluate(saved.assembly(), &params, (24, 3), &executor).unwrap().success;
-            // 24 episodes have a standard error of some 6 %.
+            // 24 episodes have a standard error of up to 10 %.
             let (rate, promised) = (success[0].rate(), summary.evaluation.success[0].rate());
-            assert!(rate > promised - 0.2 && promised > 0.9, "{}: {rate} of {promised}", entry.path().display());
+            assert!(rate > promised - 0.25 && promised > 0.4, "{}: {rate} of {promised}", entry.path().display());
         }
         seen += 1;
     }

@@ -20,9 +20,10 @@ fn trained_hands_grasp() {
         for native in [false, true] {
             let evaluate = if native { evaluate_native } else { evaluate };
             let success = evaluate(saved.assembly(), &params, (24, 3), &executor).unwrap().success;
-            // 24 episodes have a standard error of up to 10 %.
             let (rate, promised) = (success[0].rate(), summary.evaluation.success[0].rate());
-            assert!(rate > promised - 0.25 && promised > 0.4, "{}: {rate} of {promised}", entry.path().display());
+            let least = if entry.file_name() == "z-grasp" { 0.95 } else { 0.4 };
+            // 24 episodes have a standard error of up to a tenth.
+            assert!(promised > least && rate > promised - 0.25, "{}: {rate} of {promised}", entry.path().display());
         }
         seen += 1;
     }

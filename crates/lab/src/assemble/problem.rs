@@ -65,28 +65,22 @@ fn grasp(_: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
 
 #[cfg(feature = "mujoco")]
 fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
-    let world = |settings| {
-        let grasp = hwasp_mujoco::grasp::Grasp::new(settings)?;
-        Ok::<_, AssembleError>(World { law: grasp.law(), make: grasp.shared() })
-    };
+    let make = hwasp_mujoco::grasp::Grasp::new;
     let deployment = grasp_settings(p, spec);
     // What lifts more than it has to is safe where it has to.
     let load = hwasp_mujoco::grasp::Ramp { first: 1.0, last: p.safety_factor, progress: p.safety_growth };
     let training = hwasp_mujoco::grasp::GraspSettings { load_ramp: Some(load), ..deployment.clone() };
     let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
-    Ok(Problems { training: world(training)?, deployment: world(deployment)?, optimum })
+    Ok(Problems { training: world(make(training)?), deployment: world(make(deployment)?), optimum })
 }
 
 impl Assembly {
     /// The world in which the hand of this `design` (SI) moves by the engine's own tendons and springs, at the rate of the
     /// simulation, and the law has no say.
     pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
-        let spec = self.spec();
-        let problem = spec.task.kind().name();
-        let (Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings)) = &spec.task.problem else {
-            return Err(AssembleError::NoNative { problem });
-        };
-        native(settings, spec, design)
+        let problem = self.spec().task.kind().name();
+        self.grasp_problem().map_err(|_| AssembleError::NoNative { problem })?;
+        native(self, design)
     }
 
     /// What the experiment says of its grasps, if it is about any.
@@ -110,14 +104,18 @@ impl Assembly {
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn native(_: &GraspProblem, spec: &Spec, _: &[f64]) -> Result<World, AssembleError> {
-    Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
+fn native(assembly: &Assembly, _: &[f64]) -> Result<World, AssembleError> {
+    Err(AssembleError::NoEngine { problem: assembly.spec().task.kind().name() })
 }
 
 #[cfg(feature = "mujoco")]
-fn native(p: &GraspProblem, spec: &Spec, design: &[f64]) -> Result<World, AssembleError> {
-    let grasp = hwasp_mujoco::grasp::Grasp::native(grasp_settings(p, spec), &std::array::from_fn(|i| design[i]))?;
-    Ok(World { law: grasp.law(), make: grasp.shared() })
+fn native(assembly: &Assembly, design: &[f64]) -> Result<World, AssembleError> {
+    Ok(world(assembly.grasp(Some(design))?))
+}
+
+#[cfg(feature = "mujoco")]
+fn world(grasp: hwasp_mujoco::grasp::Grasp) -> World {
+    World { law: grasp.law(), make: grasp.shared() }
 }
 
 #[cfg(feature = "mujoco")]

@@ -100,7 +100,7 @@ fn ppo_step(c: &mut Criterion) {
     group.bench_function("100 steps of 128 rows", |b| {
         b.iter_batched_ref(
             || Ppo::new(&settings, Arc::clone(&policy), policy.init(1, 1.0), 1),
-            |ppo| ppo.update(&batch, 0.0, 0).expect("finite"),
+            |ppo| ppo.update(&Serial, &batch, 0.0, 0).expect("finite"),
             BatchSize::SmallInput,
         );
     });
@@ -115,7 +115,7 @@ fn iteration(c: &mut Criterion) {
     let mut group = c.benchmark_group("iteration of 20 episodes of 200 steps");
     group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(30);
     group.bench_function("rollout", |b| b.iter(|| batch(&problem, &policy, 20, 200)));
-    group.bench_function("update", |b| b.iter(|| ppo.update(&full, 0.0, 0).expect("finite")));
+    group.bench_function("update", |b| b.iter(|| ppo.update(&Serial, &full, 0.0, 0).expect("finite")));
     let mut value = MlpBaseline::new(MlpBaselineConfig::default(), 2, 4, 1);
     let targets: Vec<f32> = full.obs.iter().step_by(2).copied().collect();
     group.bench_function("fit of the value network", |b| b.iter(|| value.fit(&full, &targets, 0.0, 0)));
@@ -134,7 +134,7 @@ fn trpo_update(c: &mut Criterion) {
         group.bench_function(format!("curvature of {rows}"), |b| {
             b.iter_batched_ref(
                 || Trpo::new(&settings, Arc::clone(&policy), policy.init(1, 1.0), 1),
-                |trpo| trpo.update(&full, 0.0, 0).expect("finite"),
+                |trpo| trpo.update(&Serial, &full, 0.0, 0).expect("finite"),
                 BatchSize::SmallInput,
             );
         });

@@ -3,6 +3,8 @@
 use hwasp_diff::fast::vectorised;
 use serde::{Deserialize, Serialize};
 
+use crate::archive::{Exchange, Persist, StateError};
+
 /// Settings of [`Adam`].
 ///
 /// | name | default | purpose |
@@ -27,7 +29,7 @@ impl Default for AdamConfig {
 }
 
 /// The optimiser's state.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Adam {
     config: AdamConfig,
     first: Vec<f32>,
@@ -39,11 +41,6 @@ impl Adam {
     /// For `count` parameters.
     pub fn new(config: AdamConfig, count: usize) -> Self {
         Self { config, first: vec![0.0; count], second: vec![0.0; count], steps: 0 }
-    }
-
-    /// The number of parameters, or 0 where the two moments do not agree on one.
-    pub(crate) fn len(&self) -> usize {
-        if self.first.len() == self.second.len() { self.first.len() } else { 0 }
     }
 
     /// One descent step; `learning_rate` is per parameter.
@@ -68,6 +65,14 @@ impl Adam {
                 }
             },
         );
+    }
+}
+
+impl Persist for Adam {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("first", &mut self.first)?;
+        with.vector("second", &mut self.second)?;
+        with.number("steps", &mut self.steps)
     }
 }
 

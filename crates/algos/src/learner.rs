@@ -3,6 +3,8 @@
 use hwasp_core::{Batch, Executor};
 use thiserror::Error;
 
+use crate::archive::Persist;
+
 /// What an update did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateMetrics {
@@ -47,48 +49,21 @@ pub enum LearnError {
         /// The iteration.
         iteration: u64,
     },
-    /// A saved state of another policy or baseline.
-    #[error(
-        "the saved state has {found} {what}, but {wanted} are needed; resume with the settings that it was saved under"
-    )]
-    State {
-        /// What there are too many or too few of.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        wanted: usize,
-    },
-    /// A saved state of another kind of baseline.
-    #[error("the saved state is of another kind of baseline; resume with the settings that it was saved under")]
-    Baseline,
-}
-
-impl LearnError {
-    pub(crate) fn check_length(what: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
-        if found == wanted { Ok(()) } else { Err(Self::State { what, found, wanted }) }
-    }
 }
 
 /// Turns batches into better parameters.
-pub trait Learner {
+pub trait Learner: Persist {
     /// The policy's parameters.
     fn params(&self) -> &[f32];
 
     /// Learns from a batch that the present parameters gave. `progress` in [0, 1] drives schedules; `iteration` names the
-    /// random stream. After an error the parameters are those from before the update.
-    fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError>;
-
-    /// The same with an executor for passes over blocks of rows, whose number of threads changes no bit. A learner that
-    /// has no use for one does without.
-    fn update_on(
+    /// random stream. `executor` runs passes over blocks of rows, where a learner has use for it; its number of threads
+    /// changes no bit. After an error the learner is as it was before the update.
+    fn update(
         &mut self,
         executor: &dyn Executor,
         batch: &Batch,
         progress: f64,
         iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
-        let _ = executor;
-        self.update(batch, progress, iteration)
-    }
+    ) -> Result<UpdateMetrics, LearnError>;
 }

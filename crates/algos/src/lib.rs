@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod adam;
+mod archive;
 mod baseline;
 mod gae;
 mod learner;
@@ -14,13 +15,10 @@ mod surrogate;
 mod trpo;
 
 pub use adam::{Adam, AdamConfig};
-pub use baseline::{
-    Baseline, BaselineConfig, BaselineState, LinearBaseline, MlpBaseline, MlpBaselineConfig, MlpBaselineState,
-};
+pub use archive::{Archive, Array, Element, Exchange, Persist, StateError};
+pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig};
 pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
-pub use search::{
-    Ars, ArsConfig, ArsState, Cmaes, CmaesConfig, CmaesState, Scored, Search, SearchError, StateFilter, Stop,
-};
-pub use trpo::{FisherRows, Solution, Trpo, TrpoConfig, TrpoSettings, TrpoState, conjugate_gradient};
+pub use search::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter, Stop};
+pub use trpo::{FisherRows, Solution, Trpo, TrpoConfig, TrpoSettings, conjugate_gradient};

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, Executor, Policy, Purpose, gaussian, stream};
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, BaselineConfig};
 use crate::gae::AdvantageConfig;
 use crate::learner::{LearnError, Learner, UpdateMetrics};
@@ -234,7 +235,13 @@ impl<P: Policy> Learner for Ppo<P> {
         &self.params
     }
 
-    fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
+    fn update(
+        &mut self,
+        _executor: &dyn Executor,
+        batch: &Batch,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
         let targets = self.baseline.targets(batch, &self.config.advantages(), iteration)?;
         let before = (self.params.clone(), self.adam.clone());
         let result = self.optimise(batch, &targets.advantage, progress, iteration).and_then(|metrics| {
@@ -247,6 +254,14 @@ impl<P: Policy> Learner for Ppo<P> {
             (self.params, self.adam) = before;
         }
         result
+    }
+}
+
+impl<P: Policy> Persist for Ppo<P> {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("params", &mut self.params)?;
+        with.part("adam", &mut self.adam)?;
+        with.part("baseline", &mut self.baseline)
     }
 }
 

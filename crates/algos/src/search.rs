@@ -4,17 +4,19 @@ mod ars;
 mod cmaes;
 mod filter;
 
-pub use ars::{Ars, ArsConfig, ArsState};
-pub use cmaes::{Cmaes, CmaesConfig, CmaesState, Scored, Stop};
+pub use ars::{Ars, ArsConfig};
+pub use cmaes::{Cmaes, CmaesConfig, Stop};
 pub use filter::StateFilter;
 
 use thiserror::Error;
+
+use crate::archive::Persist;
 
 /// Ask and tell; scores are returns, more is better.
 ///
 /// Candidates are drawn from streams named by (seed, generation, candidate), so that what [`ask`](Self::ask) gives depends
 /// on the state alone: asked twice, before and after a save, it gives the same.
-pub trait Search {
+pub trait Search: Persist {
     /// The length of a candidate.
     fn dimension(&self) -> usize;
 

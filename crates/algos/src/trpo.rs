@@ -6,20 +6,19 @@ mod config;
 mod fisher;
 mod line_search;
 mod passes;
-mod state;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Executor, Policy, Purpose, Serial, gaussian, stream};
+use hwasp_core::{Batch, Executor, Policy, Purpose, gaussian, stream};
 
 pub use self::cg::{Solution, conjugate_gradient};
 pub use self::config::{FisherRows, TrpoConfig, TrpoSettings};
 use self::fisher::Fisher;
 use self::line_search::backtrack;
 use self::passes::Passes;
-pub use self::state::TrpoState;
+use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::Baseline;
 use crate::learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
 use crate::minibatch::Minibatch;
@@ -150,11 +149,7 @@ impl<P: Policy> Learner for Trpo<P> {
         &self.params
     }
 
-    fn update(&mut self, batch: &Batch, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
-        self.update_on(&Serial, batch, progress, iteration)
-    }
-
-    fn update_on(
+    fn update(
         &mut self,
         executor: &dyn Executor,
         batch: &Batch,
@@ -167,5 +162,13 @@ impl<P: Policy> Learner for Trpo<P> {
         self.params.copy_from_slice(&self.candidate);
         self.baseline.fit(batch, &targets, progress, iteration);
         Ok(metrics)
+    }
+}
+
+impl<P: Policy> Persist for Trpo<P> {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("params", &mut self.params)?;
+        with.part("baseline", &mut self.baseline)?;
+        with.number("rejected", &mut self.rejected)
     }
 }

@@ -174,7 +174,7 @@ pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learne
         let batch = sampler.collect(run.executor, learner.params(), &asked)?;
         learned.env_steps += batch.env_steps();
         learned.discarded_episodes += batch.faults.len() as u64;
-        let update = learner.update_on(run.executor, &batch, progress, iteration)?;
+        let update = learner.update(run.executor, &batch, progress, iteration)?;
         let totals = assembly.policy.space().totals(&assembly.policy.design(learner.params()));
         learned.tell(mean_returns(&batch, spec.discount()), Some(update), totals, run)?;
     }

@@ -3,7 +3,7 @@
 use hwasp_core::{Batch, Episode};
 use nalgebra::{DMatrix, DVector};
 
-use crate::learner::LearnError;
+use crate::archive::{Exchange, Persist, StateError};
 
 /// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o what it sees, clipped to ±10, and a = t/100
 /// the time in the episode. It sees the controller's input, and where it is privileged the law's state beside it.
@@ -20,16 +20,6 @@ impl LinearBaseline {
     /// Zero everywhere until the first fit. A `state_dim` of zero makes it see no more than the controller does.
     pub fn new(obs_dim: usize, state_dim: usize, ridge: f64) -> Self {
         Self { coefficients: vec![0.0; 2 * (obs_dim + state_dim) + 4], obs_dim, state_dim, ridge }
-    }
-
-    pub(super) fn coefficients(&self) -> &[f64] {
-        &self.coefficients
-    }
-
-    pub(super) fn restore(&mut self, coefficients: Vec<f64>) -> Result<(), LearnError> {
-        LearnError::check_length("coefficients of the baseline", coefficients.len(), self.coefficients.len())?;
-        self.coefficients = coefficients;
-        Ok(())
     }
 
     /// Calls `each` with row and features of every step of the episode, and with those of the state after it.
@@ -104,6 +94,12 @@ impl LinearBaseline {
             }
             ridge *= 10.0;
         }
+    }
+}
+
+impl Persist for LinearBaseline {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("coefficients", &mut self.coefficients)
     }
 }
 

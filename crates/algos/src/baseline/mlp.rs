@@ -7,7 +7,7 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use crate::adam::{Adam, AdamConfig, clip_norm};
-use crate::learner::LearnError;
+use crate::archive::{Exchange, Persist, StateError};
 use crate::minibatch::BLOCK;
 
 /// Settings of an [`MlpBaseline`].
@@ -54,17 +54,6 @@ impl Default for MlpBaselineConfig {
     }
 }
 
-/// What an [`MlpBaseline`] has learned.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MlpBaselineState {
-    params: Vec<f32>,
-    adam: Adam,
-    /// Running mean and second moment of the targets; none before the first fit.
-    moments: Option<(f64, f64)>,
-    /// Centre and scale of each state component that it sees, from the first batch.
-    scaling: Vec<(f32, f32)>,
-}
-
 /// V(s) = mean + std·network(s), where mean and std follow the targets and the last layer is corrected whenever they
 /// move, so that V does not jump (PopArt: van Hasselt et al. 2016, eqs. 9 and 10).
 #[derive(Debug)]
@@ -100,24 +89,6 @@ impl MlpBaseline {
         let tape = network.tape(BLOCK);
         let scaling = vec![(0.0, 1.0); seen];
         Self { config, network, params, adam, moments: None, scaling, obs_dim, state_dim, seed, tape }
-    }
-
-    pub(super) fn state(&self) -> MlpBaselineState {
-        MlpBaselineState {
-            params: self.params.clone(),
-            adam: self.adam.clone(),
-            moments: self.moments,
-            scaling: self.scaling.clone(),
-        }
-    }
-
-    pub(super) fn restore(&mut self, state: MlpBaselineState) -> Result<(), LearnError> {
-        LearnError::check_length("weights of the baseline", state.params.len(), self.params.len())?;
-        LearnError::check_length("moments of the baseline's optimiser", state.adam.len(), self.params.len())?;
-        LearnError::check_length("scales of the baseline", state.scaling.len(), self.scaling.len())?;
-        (self.params, self.adam) = (state.params, state.adam);
-        (self.moments, self.scaling) = (state.moments, state.scaling);
-        Ok(())
     }
 
     /// Takes centre and scale of the state from a batch.
@@ -235,6 +206,24 @@ impl MlpBaseline {
                 self.adam.step(&mut self.params, &gradient, &rate);
             }
         }
+    }
+}
+
+impl Persist for MlpBaseline {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("params", &mut self.params)?;
+        with.part("adam", &mut self.adam)?;
+        let mut moments: Vec<f64> = self.moments.map_or_else(Vec::new, |(mean, square)| vec![mean, square]);
+        with.series("moments", &mut moments)?;
+        self.moments = match moments[..] {
+            [] => None,
+            [mean, square] => Some((mean, square)),
+            _ => return Err(with.refuse("moments", moments[2], "one of two moments")),
+        };
+        let mut scaling: Vec<f32> = self.scaling.iter().flat_map(|&(centre, scale)| [centre, scale]).collect();
+        with.vector("scaling", &mut scaling)?;
+        self.scaling = scaling.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+        Ok(())
     }
 }
 

@@ -4,11 +4,12 @@ mod linear;
 mod mlp;
 
 pub use linear::LinearBaseline;
-pub use mlp::{MlpBaseline, MlpBaselineConfig, MlpBaselineState};
+pub use mlp::{MlpBaseline, MlpBaselineConfig};
 
 use hwasp_core::Batch;
 use serde::{Deserialize, Serialize};
 
+use crate::archive::{Exchange, Persist, StateError};
 use crate::gae::{AdvantageConfig, Advantages, advantages, normalize};
 use crate::learner::LearnError;
 
@@ -24,15 +25,6 @@ pub enum BaselineConfig {
     },
     /// A perceptron.
     Mlp(MlpBaselineConfig),
-}
-
-/// What a baseline has learned: with its settings all that it takes to go on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum BaselineState {
-    /// The coefficients.
-    Linear(Vec<f64>),
-    /// Weights, optimiser and scales.
-    Mlp(MlpBaselineState),
 }
 
 /// A value baseline.
@@ -84,31 +76,20 @@ impl Baseline {
         Ok(targets)
     }
 
-    /// What it has learned.
-    pub fn state(&self) -> BaselineState {
-        match self {
-            Self::Linear(linear) => BaselineState::Linear(linear.coefficients().to_vec()),
-            Self::Mlp(mlp) => BaselineState::Mlp(mlp.state()),
-        }
-    }
-
-    /// Takes over what a baseline of the same settings had learned.
-    ///
-    /// # Errors
-    /// [`LearnError::State`] where it is not one of theirs; nothing has changed then.
-    pub fn restore(&mut self, state: BaselineState) -> Result<(), LearnError> {
-        match (self, state) {
-            (Self::Linear(linear), BaselineState::Linear(coefficients)) => linear.restore(coefficients),
-            (Self::Mlp(mlp), BaselineState::Mlp(state)) => mlp.restore(state),
-            _ => Err(LearnError::Baseline),
-        }
-    }
-
     /// Learns from the batch: the linear one the discounted return, the perceptron the λ-return.
     pub fn fit(&mut self, batch: &Batch, targets: &Advantages, progress: f64, iteration: u64) {
         match self {
             Self::Linear(linear) => linear.fit(batch, &targets.discounted_return),
             Self::Mlp(mlp) => mlp.fit(batch, &targets.lambda_return, progress, iteration),
+        }
+    }
+}
+
+impl Persist for Baseline {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        match self {
+            Self::Linear(linear) => with.part("linear", linear),
+            Self::Mlp(mlp) => with.part("mlp", &mut **mlp),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hwasp_core::{End, Episode, ParamGroup, Rows};
+use hwasp_core::{End, Episode, ParamGroup, Rows, Serial};
 
 use super::*;
 
@@ -221,7 +221,7 @@ fn the_clip_acts_at_its_bounds() {
 #[test]
 fn one_update_by_hand() {
     let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
-    let metrics = ppo.update(&first(), 0.0, 0).unwrap();
+    let metrics = ppo.update(&Serial, &first(), 0.0, 0).unwrap();
     close(ppo.params()[0], 1.0 - 0.1);
     close(ppo.params()[1], std::f64::consts::LN_2 + 0.005);
     close(metrics.kl, (0.25 - (15.0_f64 / 16.0).ln()) / 3.0);
@@ -237,7 +237,7 @@ fn the_learning_rate_decays() {
     let mut settings = settings();
     settings.ppo.learning_rate_final = 0.2;
     let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
-    ppo.update(&first(), 0.5, 0).unwrap();
+    ppo.update(&Serial, &first(), 0.5, 0).unwrap();
     close(ppo.params()[0], 1.0 - 0.06);
 }
 
@@ -248,7 +248,7 @@ fn epochs_end_at_the_kl_limit() {
         let mut settings = settings();
         (settings.ppo.epochs, settings.ppo.target_kl) = (5, target_kl);
         let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
-        ppo.update(&first(), 0.0, 0).unwrap().epochs
+        ppo.update(&Serial, &first(), 0.0, 0).unwrap().epochs
     };
     // In the first epoch the estimate is 0.1048, and 1.5 times the limit is what counts.
     assert_eq!(epochs(Some(0.0698)), 1);
@@ -262,7 +262,7 @@ fn minibatches_cover_the_batch() {
     let mut settings = settings();
     (settings.ppo.minibatch_rows, settings.ppo.learning_rate) = (2, 0.0);
     let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
-    let metrics = ppo.update(&first(), 0.0, 0).unwrap();
+    let metrics = ppo.update(&Serial, &first(), 0.0, 0).unwrap();
     close(metrics.kl, (0.25 - (15.0_f64 / 16.0).ln()) / 3.0);
     close(metrics.clip_fraction, 1.0 / 3.0);
     assert_eq!(ppo.params(), params());
@@ -272,16 +272,16 @@ fn minibatches_cover_the_batch() {
 #[test]
 fn numbers_that_are_none_change_nothing() {
     let mut twin = Ppo::new(&settings(), Line::new(), params(), 0);
-    twin.update(&first(), 0.0, 0).unwrap();
+    twin.update(&Serial, &first(), 0.0, 0).unwrap();
     let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
-    ppo.update(&first(), 0.0, 0).unwrap();
+    ppo.update(&Serial, &first(), 0.0, 0).unwrap();
     let (mut reward, mut old, mut action) = (first(), first(), first());
     reward.reward[1] = f64::NAN;
     old.log_prob[1] = f32::NAN;
     action.action[1] = f32::INFINITY;
     for (batch, what) in [(reward, "an advantage"), (old, "the policy gradient"), (action, "the policy gradient")] {
         let before = ppo.params().to_vec();
-        let error = ppo.update(&batch, 0.0, 7).unwrap_err();
+        let error = ppo.update(&Serial, &batch, 0.0, 7).unwrap_err();
         assert_eq!(error, LearnError::NotFinite { what, iteration: 7 });
         assert_eq!(
             error.to_string(),
@@ -289,7 +289,7 @@ fn numbers_that_are_none_change_nothing() {
         );
         assert_eq!(ppo.params(), before);
     }
-    assert_eq!(ppo.update(&first(), 0.0, 1).unwrap(), twin.update(&first(), 0.0, 1).unwrap());
+    assert_eq!(ppo.update(&Serial, &first(), 0.0, 1).unwrap(), twin.update(&Serial, &first(), 0.0, 1).unwrap());
     assert_eq!(ppo.params(), twin.params());
 }
 
@@ -304,11 +304,27 @@ fn an_update_that_fails_half_way_is_undone() {
     let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
     // In some of the orders the bad row is not the first.
     for iteration in 0..8 {
-        ppo.update(&bad, 0.0, iteration).unwrap_err();
+        ppo.update(&Serial, &bad, 0.0, iteration).unwrap_err();
     }
     for iteration in 0..2 {
-        twin.update(&first(), 0.0, iteration).unwrap();
-        ppo.update(&first(), 0.0, iteration).unwrap();
+        twin.update(&Serial, &first(), 0.0, iteration).unwrap();
+        ppo.update(&Serial, &first(), 0.0, iteration).unwrap();
     }
     assert_eq!(ppo.params(), twin.params());
+}
+
+/// Saved after an update and taken up by a fresh learner, with either baseline.
+#[test]
+fn resumes_bit_for_bit() {
+    for baseline in [settings().baseline, BaselineConfig::Mlp(crate::baseline::MlpBaselineConfig::default())] {
+        let settings = PpoSettings { baseline, ..settings() };
+        let mut whole = Ppo::new(&settings, Line::new(), params(), 0);
+        whole.update(&Serial, &first(), 0.0, 0).unwrap();
+        let mut resumed = Ppo::new(&settings, Line::new(), vec![0.0; 2], 0);
+        resumed.load(&whole.save().unwrap()).unwrap();
+        for learner in [&mut whole, &mut resumed] {
+            learner.update(&Serial, &first(), 0.5, 1).unwrap();
+        }
+        assert_eq!(resumed.save().unwrap(), whole.save().unwrap());
+    }
 }

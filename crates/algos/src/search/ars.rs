@@ -5,6 +5,8 @@ use hwasp_core::{Purpose, stream};
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
+use crate::archive::{Exchange, Persist, StateError};
+
 use super::{Search, SearchError, failed_last};
 
 /// Settings of [`Ars`]: V1 with all directions, V1-t with the best of them. V2 and V2-t are the same search with a
@@ -36,30 +38,19 @@ impl Default for ArsConfig {
 
 /// Random search along the best of N antithetic directions (algorithm 1). Candidates 2i and 2i + 1 are centre ± ν·δᵢ and
 /// share their episodes. The directions are not kept: their streams give them again.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ars {
     config: ArsConfig,
     seed: u64,
-    state: ArsState,
-}
-
-/// What an [`Ars`] has to save.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ArsState {
     /// The parameters, M.
-    pub center: Vec<f64>,
+    center: Vec<f64>,
     /// Generations told.
-    pub generation: u64,
+    generation: u64,
 }
 
 impl Ars {
     /// Starts from `center`; `seed` names the streams.
     pub fn new(config: ArsConfig, center: Vec<f64>, seed: u64) -> Result<Self, SearchError> {
-        Self::resume(config, ArsState { center, generation: 0 }, seed)
-    }
-
-    /// Continues from a saved state, with the settings and the seed that it had.
-    pub fn resume(config: ArsConfig, state: ArsState, seed: u64) -> Result<Self, SearchError> {
         let whole = |name, value: usize, sound, limits| {
             if sound { Ok(()) } else { Err(SearchError::Setting { name, value: value as f64, limits }) }
         };
@@ -71,28 +62,23 @@ impl Ars {
                 return Err(SearchError::Setting { name, value, limits: "a positive finite number" });
             }
         }
-        Ok(Self { config, seed, state })
-    }
-
-    /// What to save.
-    pub fn state(&self) -> &ArsState {
-        &self.state
+        Ok(Self { config, seed, center, generation: 0 })
     }
 
     /// δ of a direction of this generation.
     fn direction(&self, i: usize) -> impl Iterator<Item = f64> + use<> {
-        let mut stream = stream(self.seed, Purpose::Search, self.state.generation, i as u64);
-        (0..self.state.center.len()).map(move |_| StandardNormal.sample(&mut stream))
+        let mut stream = stream(self.seed, Purpose::Search, self.generation, i as u64);
+        (0..self.center.len()).map(move |_| StandardNormal.sample(&mut stream))
     }
 }
 
 impl Search for Ars {
     fn dimension(&self) -> usize {
-        self.state.center.len()
+        self.center.len()
     }
 
     fn ask(&mut self) -> Vec<Vec<f64>> {
-        let moved = |i, step: f64| self.state.center.iter().zip(self.direction(i)).map(|(m, d)| m + step * d).collect();
+        let moved = |i, step: f64| self.center.iter().zip(self.direction(i)).map(|(m, d)| m + step * d).collect();
         let noise = self.config.noise_std;
         (0..self.config.directions).flat_map(|i| [moved(i, noise), moved(i, -noise)]).collect()
     }
@@ -100,7 +86,7 @@ impl Search for Ars {
     /// Algorithm 1, lines 6 and 7. A direction of which one way failed says nothing and is left out; so are all where the
     /// scores do not differ.
     fn tell(&mut self, scores: &[f64]) -> Result<(), SearchError> {
-        let scores = failed_last(scores, 2 * self.config.directions, self.state.generation)?;
+        let scores = failed_last(scores, 2 * self.config.directions, self.generation)?;
         let mut pairs: Vec<(usize, f64, f64)> =
             scores.chunks_exact(2).enumerate().map(|(i, pair)| (i, pair[0], pair[1])).collect();
         pairs.retain(|(_, plus, minus)| plus.is_finite() && minus.is_finite());
@@ -113,28 +99,35 @@ impl Search for Ars {
         let std = (kept().map(|r| (r - mean).powi(2)).sum::<f64>() / count).sqrt();
         if std > 0.0 {
             let step = self.config.step_size / (pairs.len() as f64 * std);
-            let mut center = self.state.center.clone();
+            let mut center = self.center.clone();
             for &(i, plus, minus) in &pairs {
                 for (m, d) in center.iter_mut().zip(self.direction(i)) {
                     *m += step * (plus - minus) * d;
                 }
             }
-            self.state.center = center;
+            self.center = center;
         }
-        self.state.generation += 1;
+        self.generation += 1;
         Ok(())
     }
 
     fn center(&self) -> Vec<f64> {
-        self.state.center.clone()
+        self.center.clone()
     }
 
     fn generation(&self) -> u64 {
-        self.state.generation
+        self.generation
     }
 
     fn group(&self, candidate: usize) -> u64 {
         candidate as u64 / 2
+    }
+}
+
+impl Persist for Ars {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("center", &mut self.center)?;
+        with.number("generation", &mut self.generation)
     }
 }
 
@@ -190,12 +183,13 @@ mod tests {
             let asked = whole.ask();
             whole.tell(&scores(&asked)).unwrap();
             let asked = parts.ask();
-            let saved: ArsState = parts.state().clone();
-            parts = Ars::resume(ArsConfig::default(), saved, 7).unwrap();
+            let saved = parts.save().unwrap();
+            parts = search(ArsConfig::default());
+            parts.load(&saved).unwrap();
             assert_eq!(parts.ask(), asked);
             parts.tell(&scores(&asked)).unwrap();
         }
-        assert_eq!(whole.state(), parts.state());
+        assert_eq!(whole, parts);
     }
 
     /// A direction with a failed side is as if it had never been tried.
@@ -209,10 +203,10 @@ mod tests {
         };
         assert_eq!(told(f64::NAN, 5.0), told(f64::NEG_INFINITY, -90.0));
         let mut ars = search(config);
-        let before = ars.state().clone();
+        let before = ars.clone();
         assert!(matches!(ars.tell(&[f64::NAN; 6]), Err(SearchError::AllFailed { candidates: 6, generation: 0 })));
         assert!(matches!(ars.tell(&[0.0; 5]), Err(SearchError::Scores { found: 5, expected: 6 })));
-        assert_eq!(*ars.state(), before);
+        assert_eq!(ars, before);
     }
 
     #[test]

@@ -16,9 +16,10 @@ use rand_distr::StandardNormal;
 use self::bounds::Bounds;
 pub use self::config::CmaesConfig;
 use self::constants::{Constants, effective};
-pub use self::state::{CmaesState, Scored};
+use self::state::{CmaesState, Scored};
 pub use self::stop::Stop;
 use super::{Search, SearchError, failed_last};
+use crate::archive::{Exchange, Persist, StateError};
 
 /// The candidate number whose stream draws the mean of a restart; no population is so large.
 const RESTART: u64 = u64::MAX;
@@ -61,29 +62,8 @@ impl Cmaes {
         config.check(mean)?;
         let bounds = Bounds::new(&config, mean.len());
         let state = CmaesState::new(&config, mean.to_vec(), bounds.point(mean), seed);
-        Ok(Self::assemble(config, bounds, state))
-    }
-
-    /// Goes on from a saved state, with the bits of a search that was never interrupted.
-    ///
-    /// # Errors
-    /// [`SearchError::Setting`] where the settings are out of their limits or the state is not one of theirs.
-    pub fn resume(config: CmaesConfig, state: CmaesState) -> Result<Self, SearchError> {
-        config.check(&state.start)?;
-        state.check(&config)?;
-        let bounds = Bounds::new(&config, state.start.len());
-        Ok(Self::assemble(config, bounds, state))
-    }
-
-    fn assemble(config: CmaesConfig, bounds: Bounds, state: CmaesState) -> Self {
-        let popsize = config.first_popsize(state.start.len()) << state.restarts;
-        let constants = Constants::new(&config, state.start.len(), popsize);
-        Self { config, bounds, constants, state, population: None }
-    }
-
-    /// What has to be saved.
-    pub fn state(&self) -> &CmaesState {
-        &self.state
+        let constants = Constants::new(&config, mean.len(), config.first_popsize(mean.len()));
+        Ok(Self { config, bounds, constants, state, population: None })
     }
 
     /// The best candidate ever told, with its score.
@@ -244,6 +224,21 @@ fn adopt(lengths: &mut [f64], variances: &[f64]) -> bool {
         lengths.iter_mut().zip(variances).for_each(|(d, v)| *d = v.sqrt());
     }
     possible
+}
+
+impl Persist for Cmaes {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        self.state.exchange(with)?;
+        if self.state.restarts > self.config.restarts {
+            return Err(with.refuse("restarts", f64::from(self.state.restarts), "within the settings' restarts"));
+        }
+        if with.loads() {
+            let n = self.dimension();
+            self.constants = Constants::new(&self.config, n, self.config.first_popsize(n) << self.state.restarts);
+            self.population = None;
+        }
+        Ok(())
+    }
 }
 
 impl Search for Cmaes {

@@ -1,10 +1,10 @@
 //! The state filter of ARS V2.
 
-use serde::{Deserialize, Serialize};
+use crate::archive::{Exchange, Persist, StateError};
 
 /// Running mean and deviation of what the controller sees (Mania et al. 2018, section 3.2): ARS V2 centres and scales its
 /// input by them. Not seen by the search itself: it is folded into the first layer of every candidate.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateFilter {
     count: f64,
     mean: Vec<f64>,
@@ -54,6 +54,14 @@ impl StateFilter {
                 *bias = (f64::from(*bias) - scaled * mean) as f32;
             }
         }
+    }
+}
+
+impl Persist for StateFilter {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.number("count", &mut self.count)?;
+        with.vector("mean", &mut self.mean)?;
+        with.vector("squares", &mut self.squares)
     }
 }
 

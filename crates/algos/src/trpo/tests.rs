@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hwasp_core::{
-    EpisodeKind, Episodes, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec, Sampler, Threads,
+    EpisodeKind, Episodes, HardwarePolicy, MakeEnvironment, Noise, Placement, PolicySpec, Sampler, Serial, Threads,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::{MassSpring, MassSpringSettings};
@@ -11,6 +11,7 @@ use proptest::prelude::*;
 use rand::RngExt;
 
 use super::*;
+use crate::archive::Archive;
 use crate::baseline::{BaselineConfig, MlpBaselineConfig};
 
 mod model;
@@ -130,7 +131,7 @@ proptest! {
         let mut trpo = Trpo::new(&settings(config.clone()), Arc::clone(&policy), params.clone(), seed);
         let batch = collect(&problem, &policy, &params, seed, 6);
         let targets = trpo.baseline.targets(&batch, &config.advantages, 0).unwrap();
-        let metrics = trpo.update(&batch, 0.0, 0).unwrap();
+        let metrics = trpo.update(&Serial, &batch, 0.0, 0).unwrap();
         let region = metrics.trust_region.unwrap();
         let model = Model::new(&policy, &batch);
         let wide = |p: &[f32]| p.iter().map(|&p| f64::from(p)).collect::<Vec<_>>();
@@ -155,7 +156,7 @@ fn the_first_step_nearly_fits() {
     let (problem, policy) = policy();
     let params = policy.init(2, 1.0);
     let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 2);
-    let metrics = trpo.update(&collect(&problem, &policy, &params, 0, 20), 0.0, 0).unwrap();
+    let metrics = trpo.update(&Serial, &collect(&problem, &policy, &params, 0, 20), 0.0, 0).unwrap();
     let region = metrics.trust_region.unwrap();
     assert!(metrics.kl > 0.005 && metrics.kl <= 0.01, "{}", metrics.kl);
     assert!(region.step_fraction > 0.6 && region.cg_iterations == 10, "{region:?}");
@@ -172,7 +173,7 @@ fn the_unit_of_the_design_is_a_matter_of_conditioning() {
     let share = |design_scale: f64, cg_iterations: usize| {
         let config = TrpoConfig { design_scale, cg_iterations, damping: 1e-3, ..TrpoConfig::default() };
         let mut trpo = Trpo::new(&settings(config), Arc::clone(&policy), params.clone(), 2);
-        assert!(trpo.update(&batch, 0.0, 0).unwrap().trust_region.unwrap().step_fraction > 0.0);
+        assert!(trpo.update(&Serial, &batch, 0.0, 0).unwrap().trust_region.unwrap().step_fraction > 0.0);
         let moved: Vec<f64> = trpo.params().iter().zip(&params).map(|(a, b)| f64::from(a - b)).collect();
         let part = |range: std::ops::Range<usize>| norm(moved[range].iter().copied());
         part(policy.design_params()) / part(0..policy.design_params().start)
@@ -190,7 +191,7 @@ fn the_number_of_threads_changes_no_bit() {
     let config = TrpoConfig { fisher_rows: FisherRows::Count(700), ..TrpoConfig::default() };
     let train = |executor: &dyn Executor| {
         let mut trpo = Trpo::new(&settings(config.clone()), Arc::clone(&policy), params.clone(), 0);
-        let metrics = trpo.update_on(executor, &batch, 0.0, 0).unwrap();
+        let metrics = trpo.update(executor, &batch, 0.0, 0).unwrap();
         (trpo.params().iter().map(|p| p.to_bits()).collect::<Vec<_>>(), metrics)
     };
     let serial = train(&Serial);
@@ -211,24 +212,21 @@ fn resumes_bit_for_bit() {
         let settings = TrpoSettings { trpo, baseline };
         let batches = |i, params: &[f32]| collect(&problem, &policy, params, i, 4);
         let mut whole = Trpo::new(&settings, Arc::clone(&policy), policy.init(0, 1.0), 0);
-        let mut saved = String::new();
+        let mut saved = Archive::new();
         for i in 0..4 {
             if i == 2 {
-                saved = serde_json::to_string(&whole.state()).unwrap();
+                saved = whole.save().unwrap();
             }
-            whole.update(&batches(i, whole.params()), 0.0, i).unwrap();
+            whole.update(&Serial, &batches(i, whole.params()), 0.0, i).unwrap();
         }
-        let state: TrpoState = serde_json::from_str(&saved).unwrap();
-        let mut resumed = Trpo::resume(&settings, Arc::clone(&policy), state.clone(), 0).unwrap();
+        let mut resumed = Trpo::new(&settings, Arc::clone(&policy), policy.init(1, 1.0), 0);
+        resumed.load(&saved).unwrap();
         for i in 2..4 {
-            resumed.update(&batches(i, resumed.params()), 0.0, i).unwrap();
+            resumed.update(&Serial, &batches(i, resumed.params()), 0.0, i).unwrap();
         }
-        assert_eq!(resumed.state(), whole.state());
-        assert_ne!(resumed.state().params, state.params);
+        assert_eq!(resumed.save().unwrap(), whole.save().unwrap());
+        assert_ne!(resumed.save().unwrap(), saved);
 
-        let short = TrpoState { params: vec![0.0; 3], ..state.clone() };
-        let error = Trpo::resume(&settings, Arc::clone(&policy), short, 0).err().unwrap();
-        assert!(error.to_string().starts_with("the saved state has 3 parameters, but "), "{error}");
         let other = TrpoSettings {
             baseline: match settings.baseline {
                 BaselineConfig::Linear { .. } => BaselineConfig::Mlp(MlpBaselineConfig::default()),
@@ -236,7 +234,8 @@ fn resumes_bit_for_bit() {
             },
             ..settings
         };
-        assert_eq!(Trpo::resume(&other, Arc::clone(&policy), state, 0).err(), Some(LearnError::Baseline));
+        let error = Trpo::new(&other, Arc::clone(&policy), policy.init(0, 1.0), 0).load(&saved).unwrap_err();
+        assert!(error.to_string().contains("`baseline."), "{error}");
     }
 }
 
@@ -246,17 +245,17 @@ fn numbers_that_are_none_change_nothing() {
     let params = policy.init(0, 1.0);
     let sound = collect(&problem, &policy, &params, 0, 4);
     let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 0);
-    let before = trpo.state();
+    let before = trpo.save().unwrap();
     let (mut reward, mut old, mut action) = (sound.clone(), sound.clone(), sound.clone());
     reward.reward[1] = f64::NAN;
     old.log_prob[1] = f32::NAN;
     action.action[1] = f32::INFINITY;
     for (batch, what) in [(reward, "an advantage"), (old, "the policy gradient"), (action, "the policy gradient")] {
-        let error = trpo.update(&batch, 0.0, 7).unwrap_err();
+        let error = trpo.update(&Serial, &batch, 0.0, 7).unwrap_err();
         assert_eq!(error, LearnError::NotFinite { what, iteration: 7 });
-        assert_eq!(trpo.state(), before);
+        assert_eq!(trpo.save().unwrap(), before);
     }
-    trpo.update(&sound, 0.0, 7).unwrap();
+    trpo.update(&Serial, &sound, 0.0, 7).unwrap();
     assert_ne!(trpo.params(), params);
 }
 
@@ -269,7 +268,7 @@ fn nothing_to_gain_is_no_step() {
     batch.reward.fill(0.0);
     let mut trpo = Trpo::new(&settings(TrpoConfig::default()), Arc::clone(&policy), params.clone(), 0);
     for updates in 1..3 {
-        let metrics = trpo.update(&batch, 0.0, 0).unwrap();
+        let metrics = trpo.update(&Serial, &batch, 0.0, 0).unwrap();
         let region = metrics.trust_region.unwrap();
         assert_eq!((region.step_fraction, region.rejected, metrics.kl), (0.0, updates, 0.0));
         assert_eq!(trpo.params(), params);

@@ -123,7 +123,7 @@ impl Case {
             let indices = 0..self.episodes;
             let training = Episodes { seed, iteration, indices, progress, kind: EpisodeKind::Training };
             let batch = self.sampler.collect(executor, learner.params(), &training).unwrap();
-            learner.update_on(executor, &batch, progress, iteration).unwrap();
+            learner.update(executor, &batch, progress, iteration).unwrap();
         }
         learner.params().to_vec()
     }

@@ -70,7 +70,7 @@ pub(crate) fn train(
         let progress = iteration as f64 / ITERATIONS as f64;
         let asked = Episodes { seed, iteration, indices: 0..EPISODES, progress, kind: EpisodeKind::Training };
         let batch = sampler.collect(&Serial, learner.params(), &asked)?;
-        learner.update(&batch, progress, iteration)?;
+        learner.update(&Serial, &batch, progress, iteration)?;
     }
     let held_out = Episodes { seed, iteration: 0, indices: 0..100, progress: 1.0, kind: EpisodeKind::Evaluation };
     let returns = sampler.collect(&Serial, learner.params(), &held_out)?.returns(DISCOUNT);

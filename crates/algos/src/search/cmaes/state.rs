@@ -1,59 +1,55 @@
 //! What a search knows, apart from its settings.
 
-use serde::{Deserialize, Serialize};
-
 use super::{CmaesConfig, Stop};
-use crate::search::SearchError;
+use crate::archive::{Exchange, Persist, StateError};
 
-/// Everything that a search needs to go on, apart from its settings: plain numbers, all of them finite.
-///
-/// Saved and read again it has to keep its bits; with `serde_json` that takes its feature `float_roundtrip`. Vectors over
+/// Everything that a search needs to go on, apart from its settings: plain numbers, all of them finite. Vectors over
 /// coordinates are of the unbounded space if there are bounds; only `start` and `best` are candidates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CmaesState {
-    /// Root seed; with the generation and the candidate it names the random stream.
-    pub seed: u64,
-    /// The mean that was given, a candidate.
-    pub start: Vec<f64>,
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CmaesState {
+    /// Root seed; with the generation and the candidate it names the random stream. A setting.
+    pub(super) seed: u64,
+    /// The mean that was given, a candidate. A setting.
+    pub(super) start: Vec<f64>,
     /// Generations told, over all restarts.
-    pub generation: u64,
+    pub(super) generation: u64,
     /// Restarts done.
-    pub restarts: u32,
+    pub(super) restarts: u32,
     /// Generations told since the last restart.
-    pub run_generation: u64,
+    pub(super) run_generation: u64,
     /// m.
-    pub mean: Vec<f64>,
+    pub(super) mean: Vec<f64>,
     /// σ.
-    pub sigma: f64,
+    pub(super) sigma: f64,
     /// The path behind the step size.
-    pub path_sigma: Vec<f64>,
+    pub(super) path_sigma: Vec<f64>,
     /// The path behind the rank-one update.
-    pub path_c: Vec<f64>,
+    pub(super) path_c: Vec<f64>,
     /// C, row-major: the lower triangle, zeros above. The diagonal alone if separable.
-    pub covariance: Vec<f64>,
+    pub(super) covariance: Vec<f64>,
     /// Bᵀ of the last decomposition, row-major: each row an eigenvector. Empty if separable.
-    pub axes: Vec<f64>,
+    pub(super) axes: Vec<f64>,
     /// D of the last decomposition: standard deviations along the axes.
-    pub lengths: Vec<f64>,
+    pub(super) lengths: Vec<f64>,
     /// `run_generation` at the last decomposition.
-    pub decomposed_at: u64,
+    pub(super) decomposed_at: u64,
     /// Best score of each generation of this run, the newest last, as far back as stagnation looks.
-    pub best_scores: Vec<f64>,
+    pub(super) best_scores: Vec<f64>,
     /// Median score of each of these generations.
-    pub median_scores: Vec<f64>,
+    pub(super) median_scores: Vec<f64>,
     /// The best candidate ever told.
-    pub best: Option<Scored>,
+    pub(super) best: Option<Scored>,
     /// Why each run ended, in their order.
-    pub stops: Vec<Stop>,
+    pub(super) stops: Vec<Stop>,
 }
 
 /// A candidate with its score.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Scored {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scored {
     /// The candidate.
-    pub candidate: Vec<f64>,
+    pub(super) candidate: Vec<f64>,
     /// Its score.
-    pub score: f64,
+    pub(super) score: f64,
 }
 
 impl CmaesState {
@@ -100,45 +96,50 @@ impl CmaesState {
         self.median_scores.clear();
     }
 
-    /// Whether this is a state of a search with these settings.
-    pub(super) fn check(&self, config: &CmaesConfig) -> Result<(), SearchError> {
-        let n = self.start.len();
-        let (covariance, axes) = if config.separable { (n, 0) } else { (n * n, n * n) };
-        let lengths = [
-            ("state.mean", &self.mean, n),
-            ("state.path_sigma", &self.path_sigma, n),
-            ("state.path_c", &self.path_c, n),
-            ("state.covariance", &self.covariance, covariance),
-            ("state.axes", &self.axes, axes),
-            ("state.lengths", &self.lengths, n),
-            ("state.median_scores", &self.median_scores, self.best_scores.len()),
-        ];
-        for (name, values, expected) in lengths {
-            if values.len() != expected {
-                let limits = "as long as the settings and the state's other vectors ask for";
-                return Err(SearchError::Setting { name, value: values.len() as f64, limits });
-            }
-            if let Some(&value) = values.iter().find(|v| !v.is_finite()) {
-                return Err(SearchError::Setting { name, value, limits: "finite" });
-            }
-        }
-        if !(self.sigma.is_finite() && self.sigma > 0.0) {
-            return Err(SearchError::Setting { name: "state.sigma", value: self.sigma, limits: "above 0 and finite" });
-        }
-        if self.restarts > config.restarts {
-            let value = f64::from(self.restarts);
-            return Err(SearchError::Setting {
-                name: "state.restarts",
-                value,
-                limits: "within the settings' restarts",
-            });
-        }
-        Ok(())
-    }
-
     /// Variance of coordinate `i`, in units of σ².
     pub(super) fn variance(&self, i: usize) -> f64 {
         let n = self.mean.len();
         self.covariance[if self.covariance.len() == n { i } else { i * (n + 1) }]
+    }
+}
+
+impl Persist for CmaesState {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.number("generation", &mut self.generation)?;
+        with.number("run_generation", &mut self.run_generation)?;
+        with.vector("mean", &mut self.mean)?;
+        with.number("sigma", &mut self.sigma)?;
+        if self.sigma <= 0.0 {
+            return Err(with.refuse("sigma", self.sigma, "above 0"));
+        }
+        with.vector("path_sigma", &mut self.path_sigma)?;
+        with.vector("path_c", &mut self.path_c)?;
+        with.vector("covariance", &mut self.covariance)?;
+        with.vector("axes", &mut self.axes)?;
+        with.vector("lengths", &mut self.lengths)?;
+        with.number("decomposed_at", &mut self.decomposed_at)?;
+        with.series("best_scores", &mut self.best_scores)?;
+        self.median_scores.resize(self.best_scores.len(), 0.0);
+        with.vector("median_scores", &mut self.median_scores)?;
+        // The best candidate and its score behind it; empty before the first.
+        let mut best = self.best.take().map_or_else(Vec::new, |best| [best.candidate, vec![best.score]].concat());
+        with.series("best", &mut best)?;
+        if let Some(score) = best.pop() {
+            if best.len() != self.mean.len() {
+                return Err(with.refuse("best", best.len() as f64, "as many coordinates as the mean"));
+            }
+            self.best = Some(Scored { candidate: best, score });
+        }
+        let mut restarts = u64::from(self.restarts);
+        with.number("restarts", &mut restarts)?;
+        self.restarts = u32::try_from(restarts).unwrap_or(u32::MAX);
+        let mut stops: Vec<u64> = self.stops.iter().map(|&stop| stop as u64).collect();
+        with.series("stops", &mut stops)?;
+        let named = |&code: &u64| Stop::ALL.get(code as usize).copied().ok_or(code);
+        match stops.iter().map(named).collect() {
+            Ok(stops) => self.stops = stops,
+            Err(code) => return Err(with.refuse("stops", code as f64, "a reason to stop")),
+        }
+        Ok(())
     }
 }

@@ -1,11 +1,9 @@
 //! When a run has ended (the tutorial's appendix B.3).
 
-use serde::{Deserialize, Serialize};
-
 use super::{CmaesConfig, CmaesState};
 
 /// Why a run has ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// A tenth of a standard deviation along a principal axis no longer changes the mean.
     NoEffectAxis,
@@ -23,6 +21,20 @@ pub enum Stop {
     TolFun,
     /// All standard deviations and the path times σ are below 1e-12 of the first σ.
     TolX,
+}
+
+impl Stop {
+    /// All of them; a saved state has their places in this list.
+    pub(super) const ALL: [Self; 8] = [
+        Self::NoEffectAxis,
+        Self::NoEffectCoord,
+        Self::ConditionCov,
+        Self::EqualFunValues,
+        Self::Stagnation,
+        Self::TolXUp,
+        Self::TolFun,
+        Self::TolX,
+    ];
 }
 
 const TOL_FUN: f64 = 1e-12;

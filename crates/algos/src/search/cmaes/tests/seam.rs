@@ -1,11 +1,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::search::{CmaesState, SearchError, Stop};
-
-fn saved(state: &CmaesState) -> CmaesState {
-    serde_json::from_str(&serde_json::to_string(state).unwrap()).unwrap()
-}
+use crate::archive::{Archive, Array, Persist};
+use crate::search::{SearchError, Stop};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
@@ -42,8 +39,8 @@ fn only_ranks_matter() {
         plain.tell(&scores).unwrap();
         other.tell(&scores.iter().map(|s| 7.0 - (-s).ln_1p()).collect::<Vec<_>>()).unwrap();
     }
-    assert_eq!(plain.state().covariance, other.state().covariance);
-    assert_eq!(plain.state().sigma, other.state().sigma);
+    assert_eq!(plain.state.covariance, other.state.covariance);
+    assert_eq!(plain.state.sigma, other.state.sigma);
 }
 
 #[test]
@@ -52,10 +49,10 @@ fn equal_scores_rank_by_number() {
         (search(CmaesConfig::default(), &[1.0; 5]), search(CmaesConfig::default(), &[1.0; 5]));
     equal.tell(&[0.0; 8]).unwrap();
     falling.tell(&[8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0]).unwrap();
-    assert_eq!(equal.state().covariance, falling.state().covariance);
+    assert_eq!(equal.state.covariance, falling.state.covariance);
 }
 
-/// Saved between ask and tell, through text, with decompositions several generations apart and bounds.
+/// Saved between ask and tell, with decompositions several generations apart and bounds.
 #[test]
 fn a_saved_state_goes_on_bit_for_bit() {
     for separable in [false, true] {
@@ -66,7 +63,8 @@ fn a_saved_state_goes_on_bit_for_bit() {
         let mut whole = search(config.clone(), &vec![1.0; n]);
         for generation in 0..18 {
             let asked = whole.ask();
-            let mut resumed = Cmaes::resume(config.clone(), saved(whole.state())).unwrap();
+            let mut resumed = search(config.clone(), &vec![1.0; n]);
+            resumed.load(&whole.save().unwrap()).unwrap();
             let scores = scores(ellipsoid, &asked);
             whole.tell(&scores).unwrap();
             // A resumed search may be told what another process asked.
@@ -74,22 +72,40 @@ fn a_saved_state_goes_on_bit_for_bit() {
                 assert_eq!(resumed.ask(), asked);
             }
             resumed.tell(&scores).unwrap();
-            assert_eq!(resumed.state(), whole.state());
+            assert_eq!(resumed.state, whole.state);
             assert_eq!(resumed.ask(), whole.ask());
             whole = resumed;
         }
-        let state = whole.state();
+        let state = &whole.state;
         assert!(separable || (state.decomposed_at > 0 && state.decomposed_at < state.run_generation));
     }
 }
 
 #[test]
 fn a_state_of_other_settings_is_refused() {
-    let state = search(CmaesConfig::default(), &[1.0; 5]).state().clone();
+    let state = search(CmaesConfig::default(), &[1.0; 5]).save().unwrap();
+    let told = |config: CmaesConfig, state: &Archive| search(config, &[1.0; 5]).load(state).unwrap_err().to_string();
     let separable = CmaesConfig { separable: true, ..CmaesConfig::default() };
-    assert!(matches!(Cmaes::resume(separable, state.clone()), Err(SearchError::Setting { .. })));
-    let damaged = CmaesState { sigma: f64::NAN, ..state };
-    assert!(matches!(Cmaes::resume(CmaesConfig::default(), damaged), Err(SearchError::Setting { .. })));
+    assert_eq!(told(separable, &state), "`covariance` of the saved state has 25 elements instead of 5");
+    for (name, array, message) in [
+        ("sigma", Array::F64(vec![0.0]), "`sigma` of the saved state is 0, which is not above 0"),
+        (
+            "restarts",
+            Array::U64(vec![1]),
+            "`restarts` of the saved state is 1, which is not within the settings' restarts",
+        ),
+        ("stops", Array::U64(vec![8]), "`stops` of the saved state is 8, which is not a reason to stop"),
+        (
+            "best",
+            Array::F64(vec![1.0; 2]),
+            "`best` of the saved state is 1, which is not as many coordinates as the mean",
+        ),
+        ("median_scores", Array::F64(vec![1.0]), "`median_scores` of the saved state has 1 elements instead of 0"),
+    ] {
+        let mut damaged = state.clone();
+        damaged.insert(name.into(), array);
+        assert_eq!(told(CmaesConfig::default(), &damaged), message);
+    }
 }
 
 /// Two of eight, then six of eight have failed: whatever they were given, and without a pull on the mean.
@@ -99,7 +115,7 @@ fn failures_rank_last() {
         let mut search = search(CmaesConfig::default(), &[1.0; 5]);
         let asked = search.ask();
         search.tell(&scores).unwrap();
-        (asked, search.state().clone())
+        (asked, search.state.clone())
     };
     let (bad, worse) = (f64::NEG_INFINITY, f64::NAN);
     let (_, low) = told([8.0, -1e9, 7.0, 6.0, 5.0, -2e9, 4.0, 3.0]);
@@ -122,10 +138,10 @@ fn failures_rank_last() {
 fn an_error_leaves_the_state() {
     let mut search = search(CmaesConfig::default(), &[1.0; 5]);
     generations(&mut search, sphere, 3);
-    let (before, asked) = (search.state().clone(), search.ask());
+    let (before, asked) = (search.state.clone(), search.ask());
     assert_eq!(search.tell(&[f64::NAN; 8]), Err(SearchError::AllFailed { candidates: 8, generation: 3 }));
     assert_eq!(search.tell(&[0.0; 7]), Err(SearchError::Scores { found: 7, expected: 8 }));
-    assert_eq!(*search.state(), before);
+    assert_eq!(search.state, before);
     assert_eq!(search.ask(), asked);
 }
 
@@ -136,14 +152,14 @@ fn a_flat_function_restarts_with_twice_the_population() {
     let mut search = search(config, &[0.5; 5]);
     let mut sizes = vec![];
     while search.stopped().is_none() && search.generation() < 200 {
-        if search.state().run_generation == 0 {
+        if search.state.run_generation == 0 {
             sizes.push(search.ask().len());
             assert_eq!(search.sigma(), 0.5);
         }
         generations(&mut search, |_| 3.0, 1);
     }
     assert_eq!(sizes, [8, 16, 32]);
-    assert_eq!(search.state().stops, [Stop::EqualFunValues; 3]);
+    assert_eq!(search.state.stops, [Stop::EqualFunValues; 3]);
     // A stopped search still goes on.
     let generation = search.generation();
     generations(&mut search, |_| 3.0, 1);

@@ -82,7 +82,7 @@ fn one_generation_by_hand() {
     for (&k, w) in order.iter().zip(weights).take(3) {
         y = [y[0] + w * z[k][0], y[1] + w * z[k][1]];
     }
-    let state = search.state();
+    let state = &search.state;
     let gain = (c_sigma * (2.0 - c_sigma) * mu_eff).sqrt();
     let length = gain * y[0].hypot(y[1]);
     // 1 - (1 - c_σ)² under the root; else the path of the rank-one update would stall, and this test with it.
@@ -126,7 +126,7 @@ fn separable_is_full_in_one_dimension() {
     for _ in 0..30 {
         generations(&mut full, sphere, 1);
         generations(&mut separable, sphere, 1);
-        let (a, b) = (full.state(), separable.state());
+        let (a, b) = (&full.state, &separable.state);
         assert!((a.mean[0] - b.mean[0]).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9);
         assert!((a.covariance[0] / b.covariance[0] - 1.0).abs() < 1e-9);
     }

@@ -186,6 +186,25 @@ impl<'a> Exchange<'a> {
         Ok(())
     }
 
+    /// The archive of something else, as it is.
+    ///
+    /// # Errors
+    /// None; in the form of the others.
+    pub fn archive(&mut self, name: &str, archive: &mut Archive) -> Result<(), StateError> {
+        let within = format!("{}.", self.full(name));
+        match &mut self.side {
+            Side::Save(all) => {
+                all.extend(archive.iter().map(|(name, array)| (format!("{within}{name}"), array.clone())))
+            }
+            Side::Load(all) => {
+                let parts =
+                    all.range(within.clone()..).map_while(|(name, array)| Some((name.strip_prefix(&within)?, array)));
+                *archive = parts.map(|(name, array)| (name.to_owned(), array.clone())).collect();
+            }
+        }
+        Ok(())
+    }
+
     /// An error about a value that was loaded.
     pub fn refuse(&self, name: &str, value: f64, limits: &'static str) -> StateError {
         StateError::Value { name: self.full(name), value, limits }

@@ -248,9 +248,11 @@ impl<P: Policy> Learner for Ppo<P> {
             let sound = self.params.iter().all(|p| p.is_finite());
             sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
         });
-        if result.is_ok() {
-            self.baseline.fit(batch, &targets, progress, iteration);
-        } else {
+        let result = result.and_then(|metrics| {
+            self.baseline.fit(batch, &targets, progress, iteration)?;
+            Ok(metrics)
+        });
+        if result.is_err() {
             (self.params, self.adam) = before;
         }
         result

@@ -16,7 +16,7 @@ use crate::archive::Persist;
 ///
 /// Candidates are drawn from streams named by (seed, generation, candidate), so that what [`ask`](Self::ask) gives depends
 /// on the state alone: asked twice, before and after a save, it gives the same.
-pub trait Search: Persist {
+pub trait Search: Persist + Send {
     /// The length of a candidate.
     fn dimension(&self) -> usize;
 

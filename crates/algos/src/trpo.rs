@@ -159,8 +159,8 @@ impl<P: Policy> Learner for Trpo<P> {
         let targets = self.baseline.targets(batch, &self.config.advantages, iteration)?;
         self.gather(batch, &targets.advantage, iteration);
         let metrics = self.step(executor, progress, iteration)?;
+        self.baseline.fit(batch, &targets, progress, iteration)?;
         self.params.copy_from_slice(&self.candidate);
-        self.baseline.fit(batch, &targets, progress, iteration);
         Ok(metrics)
     }
 }

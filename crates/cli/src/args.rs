@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use hwasp_lab::play;
@@ -16,7 +17,8 @@ Examples:
   hwasp eval runs/mass-spring-hwasp-seed0     evaluate the result on held-out starts
   hwasp plot runs/* --out curves.png          compare runs
 
-Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong.";
+Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong, 130 if it was asked to
+stop (Ctrl-C, SIGTERM).";
 
 /// The greatest seed: what TOML can write.
 const LAST_SEED: u64 = i64::MAX as u64;
@@ -26,6 +28,8 @@ const MOST_STEPS: u64 = 1_000_000_000_000;
 const MOST_EPISODES: u64 = 1_000_000;
 /// The most seeds of a comparison: a picture shows a thousand runs.
 const MOST_SEEDS: u64 = 100;
+/// The longest time between two checkpoints, s: a day.
+const MOST_SECONDS: f64 = 86_400.0;
 /// The most threads: far more than help.
 const MOST_THREADS: u64 = 1024;
 
@@ -38,6 +42,28 @@ const MOST_THREADS: u64 = 1024;
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// The form of what goes to standard error, and into a run's train.log: text, or a JSON object per line
+    #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text)]
+    pub(crate) log_format: LogFormat,
+    /// The least that is told there; train.log has all down to `debug`
+    #[arg(long, global = true, value_enum, default_value_t = LogLevel::Info)]
+    pub(crate) log_level: LogLevel,
+}
+
+/// The form of a log.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub(crate) enum LogFormat {
+    Text,
+    Json,
+}
+
+/// What a log has, at least.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LogLevel {
+    Error,
+    Warn,
+    Info,
+    Debug,
 }
 
 #[derive(Debug, Subcommand)]
@@ -48,6 +74,8 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
     Design(DesignArgs),
+    /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
+    Replay(ReplayArgs),
     /// Draw grasps of a run: held-out episodes as films, and on one sheet (in builds with the feature `renderer`)
     Play(PlayArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
@@ -62,6 +90,13 @@ pub(crate) enum Command {
     List,
     /// Draw the law of an experiment as a computational graph
     Graph(GraphArgs),
+}
+
+impl Command {
+    /// Whether nothing but errors is wanted.
+    pub(crate) fn quiet(&self) -> bool {
+        matches!(self, Self::Train(TrainArgs { quiet: true, .. }) | Self::Compare(CompareArgs { quiet: true, .. }))
+    }
 }
 
 /// How learner, controller and hardware are composed.
@@ -102,6 +137,13 @@ impl MethodArg {
 pub(crate) struct ExperimentArgs {
     /// A name from `hwasp list`, or the path of a TOML file
     pub(crate) experiment: String,
+    #[command(flatten)]
+    pub(crate) settings: SettingsArgs,
+}
+
+/// What is set anew in an experiment.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SettingsArgs {
     /// How learner, controller and hardware are composed [default: what the experiment says]
     #[arg(long, value_enum)]
     method: Option<MethodArg>,
@@ -110,7 +152,7 @@ pub(crate) struct ExperimentArgs {
     set: Vec<String>,
 }
 
-impl ExperimentArgs {
+impl SettingsArgs {
     pub(crate) fn method(&self) -> Option<&'static str> {
         self.method.map(|method| method.method().name())
     }
@@ -122,8 +164,11 @@ impl ExperimentArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct TrainArgs {
+    /// A name from `hwasp list`, or the path of a TOML file
+    #[arg(required_unless_present = "resume")]
+    pub(crate) experiment: Option<String>,
     #[command(flatten)]
-    pub(crate) experiment: ExperimentArgs,
+    pub(crate) settings: SettingsArgs,
     /// Root of all random numbers of the run [default: what the experiment says]
     #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
     pub(crate) seed: Option<u64>,
@@ -136,6 +181,12 @@ pub(crate) struct TrainArgs {
     /// The run folder [default: a new one under runs/]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
+    /// Go on with a training that was interrupted, from its newest checkpoint: the result has the same bits
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["experiment", "method", "set", "seed", "env_steps", "out"])]
+    pub(crate) resume: Option<PathBuf>,
+    /// Time between two checkpoints, at least
+    #[arg(long, value_name = "SECONDS", default_value = "30", allow_negative_numbers = true, value_parser = seconds)]
+    pub(crate) checkpoint_every: Duration,
     /// Write the learning curve for TensorBoard as well, into tensorboard/ of the run folder
     #[arg(long)]
     pub(crate) tensorboard: bool,
@@ -182,6 +233,15 @@ pub(crate) struct DesignArgs {
     /// Print JSON, for scripts; the chart is then drawn only where --out says
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReplayArgs {
+    /// A file in `faults` or `checkpoints` of a run folder
+    pub(crate) file: PathBuf,
+    /// Threads for episodes; they do not change the result
+    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
+    pub(crate) threads: NonZeroUsize,
 }
 
 #[derive(Debug, clap::Args)]
@@ -321,6 +381,14 @@ fn whole(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + 
             .filter(|number| limits.contains(number))
             .ok_or_else(|| format!("it has to be a whole number from {} to {}", limits.start(), limits.end()))
     }
+}
+
+/// Reads a time, s.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.parse().ok().filter(|s| (0.0..=MOST_SECONDS).contains(s));
+    number
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| format!("it has to be a number of seconds from 0 to {MOST_SECONDS}"))
 }
 
 fn threads(text: &str) -> Result<NonZeroUsize, String> {

@@ -13,13 +13,24 @@ use hwasp_lab::plot::PlotError;
 pub(crate) struct Failure {
     error: Box<dyn Error>,
     code: u8,
+    hint: Option<String>,
 }
 
 impl Failure {
     /// What was asked for is wrong, arguments, experiments and folders that were named among it: nothing was begun.
     /// Exit status 2, as for an unknown argument.
     pub(crate) fn input(error: impl Into<Box<dyn Error>>) -> Self {
-        Self { error: error.into(), code: 2 }
+        Self { error: error.into(), code: 2, hint: None }
+    }
+
+    /// Someone asked the program to stop. Exit status 130, as shells have it for Ctrl-C.
+    pub(crate) fn interrupted(error: impl Into<Box<dyn Error>>) -> Self {
+        Self { error: error.into(), code: 130, hint: None }
+    }
+
+    /// Says the way on.
+    pub(crate) fn hint(self, hint: &str) -> Self {
+        Self { hint: Some(hint.to_owned()), ..self }
     }
 
     /// The exit status.
@@ -42,7 +53,7 @@ impl Failure {
             }
             cause = error.source();
         }
-        if let Some(hint) = self.error.downcast_ref().and_then(way_out) {
+        if let Some(hint) = self.hint.clone().or_else(|| self.error.downcast_ref().and_then(way_out)) {
             let _ = write!(text, "\n  = hint: {hint}");
         }
         text
@@ -73,6 +84,6 @@ fn way_out(error: &RunError) -> Option<String> {
 /// What goes wrong on the way: exit status 1.
 impl<E: Error + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self { error: Box::new(error), code: 1 }
+        Self { error: Box::new(error), code: 1, hint: None }
     }
 }

@@ -7,8 +7,9 @@ use hwasp_lab::compare::Watch;
 use hwasp_lab::{Event, TrainError};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
+use crate::log::has_terminal;
 use crate::output::remark;
-use crate::progress::{duration, has_terminal};
+use crate::progress::duration;
 
 const CELL: &str = "{percent:>3}% {bar:20.cyan/dim} {wide_msg}";
 const ALL: &str = "{percent:>3}% {bar:20.green/dim} {wide_msg}";
@@ -166,6 +167,6 @@ impl Watch for GridProgress {
             state.cells[cell].label.clone()
         });
         // Told even where nothing else is: the table will lack it.
-        remark(&format!("{label} failed: {error}"));
+        tracing::error!("{label} failed: {error}");
     }
 }

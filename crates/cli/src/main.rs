@@ -6,6 +6,7 @@ mod args;
 mod commands;
 mod failure;
 mod grid_progress;
+mod log;
 mod output;
 mod progress;
 mod report;
@@ -18,10 +19,12 @@ use args::{Args, Command};
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    log::begin(args.log_format, args.log_level, args.command.quiet());
     let result = match &args.command {
         Command::Train(train) => commands::train::run(train),
         Command::Eval(eval) => commands::eval::run(eval),
         Command::Design(design) => commands::design::run(design),
+        Command::Replay(replay) => commands::replay::run(replay),
         Command::Play(play) => commands::play::run(play),
         Command::Plot(plot) => commands::plot::run(plot),
         Command::Compare(compare) => commands::compare::run(compare),
@@ -33,7 +36,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            output::remark(&failure.text());
+            tracing::error!("{}", failure.text());
             failure.exit_code()
         }
     }

@@ -1,4 +1,4 @@
-//! Standard output and standard error, whose readers may go away: `hwasp list | head -1`.
+//! Standard output, whose reader may go away (`hwasp list | head -1`), and remarks beside it.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -12,7 +12,7 @@ pub(crate) fn print(text: &str) -> io::Result<()> {
     }
 }
 
-/// Prints a remark. Work does not stop because nobody listens.
+/// Tells a remark.
 pub(crate) fn remark(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    tracing::info!("{text}");
 }

@@ -1,12 +1,10 @@
 //! Progress: a bar on a terminal, a line now and then elsewhere.
 
-use std::io::IsTerminal;
-
 use hwasp_lab::metrics::MetricsRow;
 use hwasp_lab::{Assembly, Event, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::output::remark;
+use crate::log::{PROGRESS, has_terminal};
 use crate::report::{grouped, quantity};
 
 /// Lines per training where there is no terminal.
@@ -74,20 +72,15 @@ impl Progress {
             let left = self.env_steps.saturating_sub(row.env_steps) as f64 / rate;
             self.bar.set_position(row.env_steps.min(self.env_steps));
             self.bar.set_message(format!("{message}  {} left", duration(left)));
-            return;
         }
         let due = row.env_steps.min(self.env_steps) * LINES / self.env_steps;
         if due > self.lines {
             self.lines = due;
             let total = grouped(self.env_steps);
-            remark(&format!("{:>width$} of {total} steps  {message}", grouped(row.env_steps), width = total.len()));
+            let steps = format!("{:>width$} of {total} steps", grouped(row.env_steps), width = total.len());
+            tracing::info!(target: PROGRESS, "{steps}  {message}");
         }
     }
-}
-
-/// Whether there is a terminal that can move its cursor; anything else gets lines.
-pub(crate) fn has_terminal() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(|term| term != "dumb")
 }
 
 /// A time such as `42 s`, `3 min 5 s` or `2 h 10 min`.
@@ -103,13 +96,14 @@ pub(crate) fn duration(seconds: f64) -> String {
 impl Observer for Progress {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         match event {
-            Event::Started { env_steps, totals } => self.start(env_steps, totals),
+            Event::Started { env_steps, totals, .. } => self.start(env_steps, totals),
             Event::Iteration(row) => self.iteration(row),
             Event::Evaluating => {
                 self.bar.set_message("evaluating the design on held-out starts");
                 self.bar.tick();
             }
             Event::Evaluated(_) => self.finish(),
+            Event::Checkpoint(_) | Event::Failed(_) => {}
         }
         Ok(())
     }

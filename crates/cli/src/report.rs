@@ -6,28 +6,46 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_core::Policy;
+use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::spec::Spec;
-use hwasp_lab::{Assembly, Evaluation, MeanInterval, Summary};
+use hwasp_lab::{Assembly, Evaluation, MeanInterval, Replay, Summary};
 
 /// The line before a training.
-pub(crate) fn beginning(spec: &Spec, path: &Path) -> String {
-    format!(
-        "training {} ({}, seed {}) for {} steps into {}",
-        spec.name,
-        spec.method.name(),
-        spec.seed,
-        grouped(spec.train.env_steps),
-        path.display()
-    )
+pub(crate) fn beginning(spec: &Spec, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
+    let steps = grouped(spec.train.env_steps);
+    let (verb, steps) = match from {
+        Some(from) => ("resuming", format!("after {} of {steps}", grouped(from.env_steps))),
+        None if resumed => ("resuming", format!("from the beginning (it has no checkpoint yet) for {steps}")),
+        None => ("training", format!("for {steps}")),
+    };
+    let (name, method, seed) = (&spec.name, spec.method.name(), spec.seed);
+    format!("{verb} {name} ({method}, seed {seed}) {steps} steps into {}", path.display())
+}
+
+/// An iteration that was repeated.
+pub(crate) fn replay(replay: &Replay) -> String {
+    let mut text = format!("iteration {}, after {} steps\n", replay.iteration, grouped(replay.env_steps));
+    if let Some(fault) = &replay.fault {
+        let _ = writeln!(text, "  then   {fault}");
+    }
+    let _ = match &replay.outcome {
+        Ok(update) => {
+            writeln!(text, "  now    it goes well: KL divergence {:.3e}, entropy {:.3}", update.kl, update.entropy)
+        }
+        Err(error) => writeln!(text, "  now    {error}"),
+    };
+    if let Some(same) = replay.same_batch {
+        let _ = writeln!(text, "  the episodes are {}", if same { "the same to the bit" } else { "others than then" });
+    }
+    text
 }
 
 /// The result of a training.
 pub(crate) fn training(summary: &Summary, path: &Path) -> String {
     let mut text = String::new();
-    let stopped = if summary.stopped { " (stopped early)" } else { "" };
     let _ = writeln!(
         text,
-        "\n{} · {} · seed {}{stopped}: {} steps in {:.1} s ({} steps/s)\n",
+        "\n{} · {} · seed {}: {} steps in {:.1} s ({} steps/s)\n",
         summary.experiment,
         summary.method,
         summary.seed,

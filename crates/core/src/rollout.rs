@@ -154,7 +154,7 @@ impl Sampler {
     /// Runs the episodes and returns them in the order of their indices.
     ///
     /// # Errors
-    /// Where a reward is no number, or where the physics failed in every episode; the first of them is told.
+    /// Where a reward or a log-probability is no number, or where the physics failed in every episode; the first of them is told.
     pub fn collect(&self, executor: &dyn Executor, params: &[f32], episodes: &Episodes) -> Result<Batch, RolloutError> {
         let count = (episodes.indices.end - episodes.indices.start) as usize;
         let lanes = count.div_ceil(executor.workers()).clamp(1, LANES);
@@ -290,7 +290,8 @@ impl<'p> Lanes<'p> {
                 for (to, &from) in self.batch.action[row * action_dim..].iter_mut().zip(action) {
                     *to = from as f32;
                 }
-                self.batch.log_prob[row] = actor.log_prob(e);
+                let log_prob = actor.log_prob(e);
+                self.batch.log_prob[row] = log_prob;
                 self.batch.reward[row] = result.reward;
                 let error = |what| RolloutError {
                     seed: episodes.seed,
@@ -299,6 +300,10 @@ impl<'p> Lanes<'p> {
                     step,
                     what,
                 };
+                // What is no number in an observation or an action shows here, too.
+                if !log_prob.is_finite() {
+                    return Err(error(format!("the log-probability of the action is {log_prob}")));
+                }
                 if !result.reward.is_finite() {
                     return Err(error(format!("the reward is {}", result.reward)));
                 }

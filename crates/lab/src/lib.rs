@@ -6,15 +6,20 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
+pub mod checkpoint;
 pub mod compare;
 pub mod design;
 mod drawing;
 mod evaluate;
+pub mod files;
+mod gradient;
+mod learned;
 pub mod metrics;
 mod observer;
 pub mod play;
 pub mod plot;
 mod policy_file;
+mod replay;
 mod run_folder;
 mod search;
 pub mod spec;
@@ -26,9 +31,10 @@ mod train;
 pub use assemble::{AssembleError, Assembly, LearnerSettings, Problems, World};
 pub use drawing::Drawing;
 pub use evaluate::{EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native};
-pub use observer::{Event, Observer, ObserverError};
+pub use observer::{Event, Fault, Observer, ObserverError};
 pub use policy_file::{PolicyFileError, read_policy, write_policy};
-pub use run_folder::{Provenance, RunError, RunFolder, SavedRun};
+pub use replay::{Replay, ReplayError, replay};
+pub use run_folder::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun};
 pub use summary::{DesignGroupSummary, Summary};
 pub use tensorboard::{TensorBoard, TensorBoardError};
-pub use train::{TRAILING, TrainError, Trained, train};
+pub use train::{TRAILING, TrainError, Trained, train, train_from};

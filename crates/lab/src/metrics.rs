@@ -103,6 +103,16 @@ impl<W: Write> MetricsWriter<W> {
         self.out
     }
 
+    /// The writer.
+    pub fn get_ref(&self) -> &W {
+        &self.out
+    }
+
+    /// The writer, to take away what is in it.
+    pub fn get_mut(&mut self) -> &mut W {
+        &mut self.out
+    }
+
     fn line(&mut self, text: &str) -> Result<(), MetricsError> {
         self.out.write_all(format!("{text}\n").as_bytes())?;
         Ok(self.out.flush()?)
@@ -125,13 +135,22 @@ impl MetricsTable {
     /// Reads a table. The input is not trusted: its lines, columns and rows are limited, and whatever is wrong is an
     /// error with its line.
     pub fn read(input: impl io::Read) -> Result<Self, MetricsError> {
+        Self::read_before(input, u64::MAX)
+    }
+
+    /// Reads the rows before an iteration, and nothing of what comes behind the last of them.
+    pub fn read_before(input: impl io::Read, iteration: u64) -> Result<Self, MetricsError> {
         let mut lines = Lines { input: io::BufReader::new(input), number: 0, unfinished: None, buffer: Vec::new() };
         let mut table = Self { design_totals: read_header(lines.next()?.unwrap_or(""))?, ..Self::default() };
         let mut before = 0;
-        while let Some(text) = lines.next()? {
+        while table.rows.last().map_or(0, |row| row.iteration.saturating_add(1)) < iteration {
+            let Some(text) = lines.next()? else { break };
             let row = read_row(text, &table.design_totals).map_err(|e| e.at(lines.number))?;
             if row.env_steps < before {
                 return Err(MetricsError::Backwards { line: lines.number, before, after: row.env_steps });
+            }
+            if row.iteration >= iteration {
+                break;
             }
             if table.rows.len() == MOST_ROWS {
                 return Err(MetricsError::Rows);

@@ -1,32 +1,24 @@
 //! Methods that search: over controller and design at once, or over the design with a training inside.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+mod state;
 
-use hwasp_algos::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter};
+use std::ops::Range;
+
+use hwasp_algos::{Archive, Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter};
 use hwasp_core::{EpisodeKind, Episodes, Policy, Purpose, Sampler, Serial, stream};
 use rand::RngExt;
 
+use self::state::{Generation, Scored, State};
 use crate::assemble::{AssembleError, Assembly};
+use crate::gradient::{gradient, mean_returns};
+use crate::learned::{Clock, Learned, Loop};
+use crate::observer::Event;
 use crate::spec::{CmaesSpec, Method, Score};
-use crate::train::{Learned, Loop, TrainError, gradient, mean_returns};
+use crate::train::TrainError;
 
 /// Episodes on which the last centre and the best candidate are compared: a candidate that was best of many on few
 /// episodes was lucky, too.
 const FINAL_EPISODES: usize = 16;
-
-/// One candidate, scored.
-struct Scored {
-    /// The parameters that acted: of the whole policy.
-    params: Vec<f32>,
-    /// Mean discounted and undiscounted return, and steps taken; none of the returns where it failed.
-    returns: Option<(f64, f64)>,
-    env_steps: u64,
-    /// Episodes whose physics failed.
-    discarded_episodes: u64,
-    /// What the controller saw, where a filter wants to know.
-    seen: Vec<f32>,
-}
 
 /// What is searched and how a candidate is scored.
 struct Problem<'a> {
@@ -34,63 +26,36 @@ struct Problem<'a> {
     sampler: Sampler,
     /// The policy's parameters at the start.
     start: Vec<f32>,
-    filter: Option<StateFilter>,
 }
 
-/// Searches until the budget does not hold another generation, or until `stop` is set.
-pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>) -> Result<Learned, TrainError> {
+/// Searches until the budget does not hold another generation, from the beginning or from where a search was interrupted.
+pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
     let spec = assembly.spec();
-    let start = assembly.init();
-    let filter =
-        (spec.method == Method::Ars && spec.ars.variant.filters()).then(|| StateFilter::new(assembly.policy.obs_dim()));
-    let sampler =
-        Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
-    let mut problem = Problem { assembly, sampler, start, filter };
-    let mut search = problem.searcher()?;
-    let mut learned = Learned::default();
-    let mut best: Option<(f64, Vec<f32>)> = None;
-    while search.stopped().is_none() {
-        let candidates = search.ask();
+    let problem = Problem::new(assembly);
+    let mut state = problem.state(from)?;
+    run.clock = Clock::start(state.learned.wall_s);
+    while state.search.stopped().is_none() {
+        let candidates = state.search.ask();
         let cost = candidates.len() as u64 * assembly.candidate_steps() + assembly.final_steps();
-        if learned.env_steps + cost > spec.train.env_steps || run.stop.load(Ordering::Relaxed) {
+        if state.learned.env_steps + cost > spec.train.env_steps {
             break;
         }
-        let (generation, stop) = (search.generation(), run.stop);
-        let groups: Vec<u64> = (0..candidates.len()).map(|i| search.group(i)).collect();
-        let scored = run.executor.map(candidates.len(), |i| problem.score(&candidates[i], generation, groups[i], stop));
-        let scored = scored.into_iter().collect::<Result<Vec<_>, _>>()?;
-        learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
-        learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
-        if run.stop.load(Ordering::Relaxed) && spec.method.trains_inside() {
-            // Trainings that were cut short say nothing of their designs.
-            break;
+        let scored = Generation { problem: &problem, candidates: &candidates }.score(&mut state, run)?;
+        problem.tell(&mut state, scored, run)?;
+        if run.observer.due() {
+            run.observer.on(Event::Checkpoint(&state.checkpoint(run.clock)?))?;
         }
-        if let Some(filter) = &mut problem.filter {
-            for candidate in &scored {
-                filter.update(&candidate.seen);
-            }
-        }
-        let scores: Vec<f64> =
-            scored.iter().map(|s| s.returns.map_or(f64::NEG_INFINITY, |r| problem.pick(r))).collect();
-        search.tell(&scores)?;
-        let sound: Vec<(f64, f64)> = scored.iter().filter_map(|s| s.returns).collect();
-        learned.failed_candidates += (scored.len() - sound.len()) as u64;
-        for (candidate, score) in scored.into_iter().zip(scores) {
-            if best.as_ref().is_none_or(|(most, _)| score > *most) {
-                best = Some((score, candidate.params));
-            }
-        }
-        let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
-        let totals = assembly.policy.space().totals(&assembly.policy.design(&problem.params(&search.center())));
-        // There is no policy whose change or spread could be told.
-        learned.tell((mean(|r| r.0), mean(|r| r.1)), None, totals, run)?;
     }
-    learned.params = match best {
-        Some((_, best)) if spec.method.trains_inside() => best,
-        Some((_, best)) => problem.final_choice(&mut learned, search.as_ref(), best),
-        None => problem.start,
-    };
-    Ok(learned)
+    // What is left to do, an evaluation, may be long.
+    run.observer.on(Event::Checkpoint(&state.checkpoint(run.clock)?))?;
+    Ok(problem.outcome(state))
+}
+
+/// The parameters of the best candidate that an interrupted search had found; those of the start where none was scored.
+pub(crate) fn best_so_far(assembly: &Assembly, from: &Archive) -> Result<Vec<f32>, TrainError> {
+    let problem = Problem::new(assembly);
+    let best = problem.state(Some(from))?.best;
+    Ok(best.map_or(problem.start, |(_, params)| params))
 }
 
 /// Candidates as asked for; none for the default.
@@ -98,7 +63,21 @@ fn popsize(cmaes: &CmaesSpec) -> Option<usize> {
     (cmaes.popsize > 0).then_some(cmaes.popsize)
 }
 
-impl Problem<'_> {
+impl<'a> Problem<'a> {
+    fn new(assembly: &'a Assembly) -> Self {
+        let steps = assembly.spec().train.episode_steps;
+        let sampler = Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(steps));
+        Self { assembly, sampler, start: assembly.init() }
+    }
+
+    /// A search at its beginning, or where it was interrupted.
+    fn state(&self, from: Option<&Archive>) -> Result<State, TrainError> {
+        let spec = self.assembly.spec();
+        let filters = spec.method == Method::Ars && spec.ars.variant.filters();
+        let filter = filters.then(|| StateFilter::new(self.assembly.policy.obs_dim()));
+        Ok(State::new(self.searcher()?, filter, from)?)
+    }
+
     fn searcher(&self) -> Result<Box<dyn Search>, SearchError> {
         let spec = self.assembly.spec();
         let (cmaes, ars) = (&spec.cmaes, &spec.ars);
@@ -160,9 +139,9 @@ impl Problem<'_> {
     }
 
     /// The parameters that act for a candidate.
-    fn acting(&self, candidate: &[f64]) -> Vec<f32> {
+    fn acting(&self, candidate: &[f64], filter: Option<&StateFilter>) -> Vec<f32> {
         let mut params = self.params(candidate);
-        if let Some(filter) = &self.filter {
+        if let Some(filter) = filter {
             filter.fold(&mut params, self.assembly.policy.controller().sizes()[1]);
         }
         params
@@ -175,24 +154,15 @@ impl Problem<'_> {
         }
     }
 
-    fn score(&self, candidate: &[f64], generation: u64, group: u64, stop: &AtomicBool) -> Result<Scored, TrainError> {
-        let params = self.acting(candidate);
-        if self.assembly.spec().method.trains_inside() {
-            return self.train_inside(params, generation, stop);
-        }
-        let episodes = self.assembly.spec().search.episodes as u64;
-        Ok(self.run(params, generation, group * episodes..(group + 1) * episodes))
-    }
-
     /// Runs episodes. One that fails fails its candidate, which is charged all of its steps.
-    fn run(&self, params: Vec<f32>, iteration: u64, indices: std::ops::Range<u64>) -> Scored {
+    fn run(&self, params: Vec<f32>, iteration: u64, indices: Range<u64>, filters: bool) -> Scored {
         let spec = self.assembly.spec();
         let kind = if spec.search.noise { EpisodeKind::Training } else { EpisodeKind::Deterministic };
         let count = indices.end - indices.start;
         let asked = Episodes { seed: spec.seed, iteration, indices, progress: 0.0, kind };
         let Ok(batch) = self.sampler.collect(&Serial, &params, &asked) else {
             let env_steps = count * spec.train.episode_steps as u64;
-            return Scored { params, returns: None, env_steps, discarded_episodes: 0, seen: Vec::new() };
+            return Scored { params, env_steps, ..Scored::default() };
         };
         let sound = batch.faults.is_empty();
         Scored {
@@ -200,20 +170,25 @@ impl Problem<'_> {
             returns: sound.then(|| mean_returns(&batch, spec.discount())),
             env_steps: batch.env_steps(),
             discarded_episodes: batch.faults.len() as u64,
-            seen: if sound && self.filter.is_some() { batch.obs } else { Vec::new() },
+            seen: if sound && filters { batch.obs } else { Vec::new() },
         }
     }
 
     /// Trains a controller of its own for a candidate's design. All candidates of a generation begin with the same weights
     /// and see the same random numbers.
-    fn train_inside(&self, mut params: Vec<f32>, generation: u64, stop: &AtomicBool) -> Result<Scored, TrainError> {
+    fn train_inside(
+        &self,
+        mut params: Vec<f32>,
+        generation: u64,
+        run: &mut Loop<'_>,
+        from: Option<&Archive>,
+    ) -> Result<Scored, TrainError> {
         let policy = &self.assembly.policy;
         // TOML holds no seed beyond 2^63.
         let seed = stream(self.assembly.spec().seed, Purpose::InnerSeed, generation, 0).random::<u64>() >> 1;
         let env_steps = self.assembly.spec().search.inner_env_steps;
         let inner = self.assembly.frozen(&policy.design(&params), seed, env_steps)?;
-        let mut run = Loop { executor: &Serial, observer: &mut (), stop, began: Instant::now() };
-        match gradient(&inner, &mut run) {
+        match gradient(&inner, run, from) {
             Ok(learned) => {
                 let controller = inner.policy.controller_params(&learned.params);
                 params[..controller.len()].copy_from_slice(controller);
@@ -221,22 +196,57 @@ impl Problem<'_> {
                 let Learned { env_steps, discarded_episodes, .. } = learned;
                 Ok(Scored { params, returns: Some(returns), env_steps, discarded_episodes, seen: Vec::new() })
             }
-            Err(TrainError::Rollout(_) | TrainError::Learn(_)) => {
-                Ok(Scored { params, returns: None, env_steps, discarded_episodes: 0, seen: Vec::new() })
+            Err(TrainError::Rollout(_) | TrainError::Learn(_) | TrainError::Physics { .. }) => {
+                Ok(Scored { params, env_steps, ..Scored::default() })
             }
             Err(other) => Err(other),
         }
     }
 
-    /// The better of the last centre and the best candidate, on the same fresh episodes.
-    fn final_choice(&self, learned: &mut Learned, search: &dyn Search, best: Vec<f32>) -> Vec<f32> {
-        let both = [self.acting(&search.center()), best];
-        let scored = both.map(|params| self.run(params, search.generation(), 0..FINAL_EPISODES as u64));
+    /// Goes on to the next generation.
+    fn tell(&self, state: &mut State, scored: Vec<Scored>, run: &mut Loop<'_>) -> Result<(), TrainError> {
+        let learned = &mut state.learned;
         learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
         learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
-        let [center, best] = scored;
-        let score = |s: &Scored| s.returns.map_or(f64::NEG_INFINITY, |r| self.pick(r));
-        if score(&best) > score(&center) { best.params } else { center.params }
+        if let Some(filter) = &mut state.filter {
+            for candidate in &scored {
+                filter.update(&candidate.seen);
+            }
+        }
+        let scores: Vec<f64> = scored.iter().map(|s| s.returns.map_or(f64::NEG_INFINITY, |r| self.pick(r))).collect();
+        state.search.tell(&scores)?;
+        let sound: Vec<(f64, f64)> = scored.iter().filter_map(|s| s.returns).collect();
+        learned.failed_candidates += (scored.len() - sound.len()) as u64;
+        for (candidate, score) in scored.into_iter().zip(scores) {
+            if state.best.as_ref().is_none_or(|(most, _)| score > *most) {
+                state.best = Some((score, candidate.params));
+            }
+        }
+        let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
+        let policy = &self.assembly.policy;
+        let totals = policy.space().totals(&policy.design(&self.params(&state.search.center())));
+        // There is no policy whose change or spread could be told.
+        Ok(learned.tell((mean(|r| r.0), mean(|r| r.1)), None, totals, run)?)
+    }
+
+    /// What a search came to: the best candidate, whose controller was trained for it; or the better of that and the last
+    /// centre, on the same fresh episodes.
+    fn outcome(self, state: State) -> Learned {
+        let State { search, filter, best, mut learned, .. } = state;
+        learned.params = match best {
+            None => self.start,
+            Some((_, best)) if self.assembly.spec().method.trains_inside() => best,
+            Some((_, best)) => {
+                let both = [self.acting(&search.center(), filter.as_ref()), best];
+                let scored = both.map(|params| self.run(params, search.generation(), 0..FINAL_EPISODES as u64, false));
+                learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
+                learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
+                let [center, best] = scored;
+                let score = |s: &Scored| s.returns.map_or(f64::NEG_INFINITY, |r| self.pick(r));
+                if score(&best) > score(&center) { best.params } else { center.params }
+            }
+        };
+        learned
     }
 }
 

@@ -59,8 +59,6 @@ pub struct Summary {
     pub discarded_episodes: u64,
     /// The deterministic policy on held-out starts, on the hardware as built.
     pub evaluation: Evaluation,
-    /// Whether training was stopped before its budget was spent.
-    pub stopped: bool,
     /// The design.
     pub design: BTreeMap<String, DesignGroupSummary>,
 }
@@ -83,7 +81,6 @@ impl Summary {
             failed_candidates: trained.failed_candidates,
             discarded_episodes: trained.discarded_episodes,
             evaluation: trained.evaluation.clone(),
-            stopped: trained.stopped,
             design: design_summary(assembly, &trained.params),
         }
     }

@@ -20,10 +20,13 @@
 //! | `evaluation/return`, `evaluation/discounted_return` | the means of the evaluation | the last |
 //! | `evaluation/median_discounted_return`, `evaluation/worst_discounted_return` | over its episodes | the last |
 //!
+//! A training that is resumed begins another file in the folder, with a `session_log` (message, 7) whose `status` (enum, 1) is
+//! `START`: readers then drop from the older files what comes behind the checkpoint.
+//!
 //! The step of a scalar is the number of simulator steps so far. A value that is not finite is left out.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -41,13 +44,17 @@ pub struct TensorBoardError {
     source: io::Error,
 }
 
-/// An [`Observer`] that writes `events.out.tfevents.<unix seconds>.hwasp`.
+/// An [`Observer`] that writes `events.out.tfevents.<unix seconds>.hwasp`. What cannot be written is left out.
 #[derive(Debug)]
 pub struct TensorBoard {
     path: PathBuf,
     file: File,
+    /// Bytes of whole records.
+    length: u64,
     totals: Vec<String>,
     env_steps: u64,
+    /// Whether the last record could not be written.
+    failing: bool,
 }
 
 impl TensorBoard {
@@ -55,9 +62,10 @@ impl TensorBoard {
     pub fn create(folder: &Path) -> Result<Self, TensorBoardError> {
         fs::create_dir_all(folder).map_err(|source| TensorBoardError { path: folder.to_owned(), source })?;
         let now = now();
-        let path = folder.join(format!("events.out.tfevents.{}.hwasp", now as u64));
+        // Readers take the files of a folder in the order of their names.
+        let path = folder.join(format!("events.out.tfevents.{now:.6}.hwasp"));
         let file = File::create_new(&path).map_err(|source| TensorBoardError { path: path.clone(), source })?;
-        let mut board = Self { path, file, totals: Vec::new(), env_steps: 0 };
+        let mut board = Self { path, file, length: 0, totals: Vec::new(), env_steps: 0, failing: false };
         board.write(&version(now))?;
         Ok(board)
     }
@@ -69,8 +77,15 @@ impl TensorBoard {
 
     /// One record in one piece, so that a killed run leaves whole records behind.
     fn write(&mut self, event: &[u8]) -> Result<(), TensorBoardError> {
-        let source = |source| TensorBoardError { path: self.path.clone(), source };
-        self.file.write_all(&record(event)).map_err(source)
+        let record = record(event);
+        let written = self.file.write_all(&record);
+        if written.is_ok() {
+            self.length += record.len() as u64;
+        } else {
+            // Half a record would be taken for the beginning of the next.
+            let _ = self.file.set_len(self.length).and_then(|()| self.file.seek(SeekFrom::Start(self.length)));
+        }
+        written.map_err(|source| TensorBoardError { path: self.path.clone(), source })
     }
 
     fn scalars<'a>(&mut self, scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<(), TensorBoardError> {
@@ -84,9 +99,9 @@ impl TensorBoard {
 impl Observer for TensorBoard {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         let written = match event {
-            Event::Started { totals, .. } => {
+            Event::Started { totals, resumed, .. } => {
                 self.totals = totals.iter().map(|name| format!("design/{name}")).collect();
-                Ok(())
+                resumed.map_or(Ok(()), |env_steps| self.write(&session(now(), env_steps + 1)))
             }
             Event::Iteration(row) => {
                 self.env_steps = row.env_steps;
@@ -110,9 +125,15 @@ impl Observer for TensorBoard {
                 ]
                 .into_iter(),
             ),
-            Event::Evaluating => Ok(()),
+            Event::Checkpoint(_) | Event::Failed(_) | Event::Evaluating => Ok(()),
         };
-        written.map_err(|error| ObserverError(Box::new(error)))
+        if let Err(error) = &written
+            && !self.failing
+        {
+            tracing::warn!("{error}; training goes on, what belongs there is left out");
+        }
+        self.failing = written.is_err();
+        Ok(())
     }
 }
 
@@ -142,6 +163,17 @@ fn version(wall_time: f64) -> Vec<u8> {
     let mut event = Vec::new();
     double(&mut event, 1, wall_time);
     bytes(&mut event, 3, b"brain.Event:2");
+    event
+}
+
+/// The event that says: what other files have from this step on is not true any more.
+fn session(wall_time: f64, step: u64) -> Vec<u8> {
+    let mut event = Vec::new();
+    double(&mut event, 1, wall_time);
+    key(&mut event, 2, Wire::Varint);
+    varint(&mut event, step);
+    // `SessionLog { status: START }`.
+    bytes(&mut event, 7, &[1 << 3, 1]);
     event
 }
 

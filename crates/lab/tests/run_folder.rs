@@ -10,7 +10,10 @@ use std::sync::atomic::AtomicBool;
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_lab::metrics::{MetricsRow, MetricsTable};
 use hwasp_lab::spec::{self, Spec};
-use hwasp_lab::{Assembly, Provenance, RunError, RunFolder, SavedRun, Summary, TrainError, evaluate, train};
+use hwasp_lab::{
+    Assembly, Event, Keeping, Observer, ObserverError, Provenance, RunError, RunFolder, SavedRun, Summary, evaluate,
+    train,
+};
 
 const SETTINGS: &[(&str, &str)] = &[("train.env_steps", "2400"), ("train.evaluation_episodes", "20")];
 
@@ -30,16 +33,16 @@ fn provenance(spec: &Spec) -> Provenance {
     Provenance::new(vec!["hwasp".into(), "train".into(), "a \"name\"".into()], 1, spec.seed)
 }
 
-fn run_with(path: &Path, spec: &Spec, executor: &dyn Executor, stopped: bool) -> Summary {
+fn run_with(path: &Path, spec: &Spec, executor: &dyn Executor) -> Summary {
     let assembly = Assembly::new(spec).unwrap();
-    let mut folder = RunFolder::create(path, spec, &provenance(spec)).unwrap();
+    let mut folder = RunFolder::create(path, spec, &provenance(spec), Keeping::default()).unwrap();
     assert_eq!(folder.path(), path);
-    let trained = train(&assembly, executor, &mut folder, &AtomicBool::new(stopped)).unwrap();
+    let trained = train(&assembly, executor, &mut folder, &AtomicBool::new(false)).unwrap();
     folder.finish(&assembly, &trained).unwrap()
 }
 
 fn run(path: &Path, spec: &Spec) -> Summary {
-    run_with(path, spec, &Serial, false)
+    run_with(path, spec, &Serial)
 }
 
 fn rows(path: &Path) -> Vec<MetricsRow> {
@@ -55,7 +58,9 @@ fn files(path: &Path) -> BTreeSet<String> {
     fs::read_dir(path).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-const ALL: [&str; 7] = [
+const ALL: [&str; 9] = [
+    ".lock",
+    "checkpoints",
     "curves.svg",
     "design.toml",
     "experiment.toml",
@@ -85,7 +90,7 @@ fn every_file_is_there_and_well_formed() {
 
     // Figures agree between the files, and with the parameters.
     let read = json(path.join("summary.json"));
-    for key in ["experiment", "method", "task", "seed", "env_steps", "wall_s", "steps_per_s", "evaluation", "stopped"] {
+    for key in ["experiment", "method", "task", "seed", "env_steps", "wall_s", "steps_per_s", "evaluation"] {
         assert!(!read[key].is_null(), "{key} in {read}");
     }
     assert_eq!((&read["method"], &read["task"], &read["seed"]), (&"hwasp".into(), &"bar-length".into(), &7.into()));
@@ -142,7 +147,7 @@ fn the_number_of_threads_changes_no_file_but_the_provenance() {
     let spec = experiment("reach", None, SETTINGS);
     let (one, two) = (empty("one-thread"), empty("two-threads"));
     run(&one, &spec);
-    run_with(&two, &spec, &Threads::new(2).unwrap(), false);
+    run_with(&two, &spec, &Threads::new(2).unwrap());
     for file in ["experiment.toml", "policy.safetensors", "design.toml"] {
         assert_eq!(fs::read(one.join(file)).unwrap(), fs::read(two.join(file)).unwrap(), "{file}");
     }
@@ -168,25 +173,12 @@ fn a_saved_run_evaluates_to_what_its_summary_says() {
 }
 
 #[test]
-fn a_stopped_training_leaves_a_sound_folder_that_says_so() {
-    let path = empty("stopped");
-    let summary = run_with(&path, &experiment("reach", None, SETTINGS), &Serial, true);
-    assert!(summary.stopped);
-    assert_eq!(json(path.join("summary.json"))["stopped"], true);
-    // Not one iteration was done, so that there is nothing to draw.
-    assert_eq!(files(&path), ALL[1..].iter().map(|&file| file.to_owned()).collect());
-    let saved = SavedRun::open(&path).unwrap();
-    assert_eq!(saved.params().unwrap(), saved.assembly().init());
-    assert!(rows(&path).is_empty());
-}
-
-#[test]
 fn a_folder_with_something_in_it_is_not_touched() {
     let path = empty("occupied");
     let spec = experiment("reach", None, SETTINGS);
     fs::create_dir_all(&path).unwrap();
     fs::write(path.join("thesis.tex"), "precious").unwrap();
-    let error = RunFolder::create(&path, &spec, &provenance(&spec)).unwrap_err();
+    let error = RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap_err();
     assert!(matches!(&error, RunError::Exists { path: found } if *found == path), "{error}");
     assert_eq!(files(&path), ["thesis.tex".to_owned()].into());
     assert_eq!(fs::read_to_string(path.join("thesis.tex")).unwrap(), "precious");
@@ -216,22 +208,39 @@ fn an_experiment_cannot_name_a_folder_outside_of_the_root() {
 }
 
 #[test]
-fn a_folder_that_vanishes_ends_the_training_with_the_file_s_name() {
+fn a_folder_that_vanishes_is_made_again() {
     let path = empty("vanished");
     let spec = experiment("reach", None, SETTINGS);
     let assembly = Assembly::new(&spec).unwrap();
-    let mut folder = RunFolder::create(&path, &spec, &provenance(&spec)).unwrap();
-    fs::remove_dir_all(&path).unwrap();
-    let error = train(&assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap_err();
-    assert!(matches!(error, TrainError::Observer(_)));
-    assert!(error.to_string().contains("metrics.csv"), "{error}");
+    let mut folder = RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
+    let trained = train(&assembly, &Serial, &mut Vanishing { folder: &mut folder }, &AtomicBool::new(false)).unwrap();
+    folder.finish(&assembly, &trained).unwrap();
+    // The rows before that are gone, and nothing else.
+    assert_eq!(rows(&path).iter().map(|row| row.iteration).collect::<Vec<_>>(), [1]);
+    assert_eq!(files(&path), ALL[1..].iter().map(|&file| file.to_owned()).collect());
+    assert!(SavedRun::open(&path).unwrap().params().is_ok());
+}
+
+/// Someone removes the folder after the first iteration.
+struct Vanishing<'a> {
+    folder: &'a mut RunFolder,
+}
+
+impl Observer for Vanishing<'_> {
+    fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
+        self.folder.on(event)?;
+        if let Event::Iteration(MetricsRow { iteration: 0, .. }) = event {
+            fs::remove_dir_all(self.folder.path()).unwrap();
+        }
+        Ok(())
+    }
 }
 
 #[test]
 fn a_run_that_has_not_finished_says_so() {
     let path = empty("begun");
     let spec = experiment("reach", None, SETTINGS);
-    RunFolder::create(&path, &spec, &provenance(&spec)).unwrap();
+    RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
     let saved = SavedRun::open(&path).unwrap();
     assert!(matches!(saved.params(), Err(RunError::Unfinished { file: "policy.safetensors", .. })));
     assert!(matches!(SavedRun::open(&path.join("..")), Err(RunError::NotARun { file: "experiment.toml", .. })));

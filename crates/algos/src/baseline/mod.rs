@@ -76,12 +76,29 @@ impl Baseline {
         Ok(targets)
     }
 
-    /// Learns from the batch: the linear one the discounted return, the perceptron the λ-return.
-    pub fn fit(&mut self, batch: &Batch, targets: &Advantages, progress: f64, iteration: u64) {
+    /// Learns from the batch: the linear one the discounted return, the perceptron the λ-return. After an error it is as it
+    /// was before.
+    pub fn fit(
+        &mut self,
+        batch: &Batch,
+        targets: &Advantages,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<(), LearnError> {
         match self {
             Self::Linear(linear) => linear.fit(batch, &targets.discounted_return),
-            Self::Mlp(mlp) => mlp.fit(batch, &targets.lambda_return, progress, iteration),
+            Self::Mlp(mlp) => {
+                let not_finite = LearnError::NotFinite { what: "a parameter of the baseline", iteration };
+                let Ok(before) = mlp.save() else { return Err(not_finite) };
+                mlp.fit(batch, &targets.lambda_return, progress, iteration);
+                // What cannot be saved is not finite; and what was saved can be loaded.
+                if mlp.save().is_err() {
+                    let _ = mlp.load(&before);
+                    return Err(not_finite);
+                }
+            }
         }
+        Ok(())
     }
 }
 

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output;
 
 pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
-    let (_, assembly) = experiment(&args.experiment, &[])?;
+    let (_, assembly) = experiment(&args.experiment.experiment, &args.experiment.settings, &[])?;
     let drawing = assembly.drawing();
     let Some(path) = &args.out else {
         return Ok(output::print(&drawing.dot)?);

@@ -8,6 +8,7 @@ pub(crate) mod graph;
 pub(crate) mod list;
 pub(crate) mod play;
 pub(crate) mod plot;
+pub(crate) mod replay;
 pub(crate) mod reproduce;
 pub(crate) mod train;
 
@@ -20,7 +21,7 @@ use hwasp_core::{Executor, Serial, Threads};
 use hwasp_lab::spec::{self, Layers, Spec};
 use hwasp_lab::{Assembly, SavedRun};
 
-use crate::args::ExperimentArgs;
+use crate::args::SettingsArgs;
 use crate::failure::Failure;
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
@@ -42,9 +43,9 @@ fn typed() -> Vec<String> {
 }
 
 /// The experiment that arguments name, with further settings on top, put together.
-fn experiment(args: &ExperimentArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
-    let layers = layers(&args.experiment, args.set(), further)?;
-    let spec = spec::resolve(layers, args.method()).map_err(Failure::input)?;
+fn experiment(name: &str, set: &SettingsArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
+    let layers = layers(name, set.set(), further)?;
+    let spec = spec::resolve(layers, set.method()).map_err(Failure::input)?;
     let assembly = Assembly::new(&spec).map_err(Failure::input)?;
     Ok((spec, assembly))
 }

@@ -2,41 +2,89 @@
 
 use std::path::Path;
 
-use hwasp_lab::{Observer, Provenance, RunFolder, TensorBoard, train};
+use hwasp_lab::{Assembly, Keeping, Observer, Provenance, Resumed, RunFolder, TensorBoard, TrainError, train_from};
 
-use super::{executor, experiment, stop_on_signal, typed};
+use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::{output, report};
+use crate::{log, output, report};
 
 pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
-    let mut further = Vec::new();
-    further.extend(args.seed.map(|seed| ("seed", seed.to_string())));
-    further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
-    let (spec, assembly) = experiment(&args.experiment, &further)?;
     let executor = executor(args.threads)?;
-    let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
-    let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
-    // A folder that cannot be had is known before the work begins.
-    let mut folder = RunFolder::create(&path, &spec, &provenance).map_err(Failure::input)?;
-    let mut board = args.tensorboard.then(|| TensorBoard::create(&path.join("tensorboard"))).transpose()?;
+    let (assembly, Resumed { mut folder, found }) = match &args.resume {
+        Some(run) => taken_up(run, args)?,
+        None => begun(args)?,
+    };
+    let path = folder.path().to_owned();
+    log::to_file(&path.join("train.log"));
+    found.warn();
+    let from = found.checkpoint.as_ref();
+    let tensorboard = path.join("tensorboard");
+    let wanted = args.tensorboard || (args.resume.is_some() && tensorboard.is_dir());
+    let mut board = wanted.then(|| TensorBoard::create(&tensorboard)).transpose()?;
 
     let stop = stop_on_signal()?;
 
     let mut progress = Progress::new(&assembly);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];
     observers.extend(board.as_mut().map(|board| board as &mut dyn Observer));
+    output::remark(&report::beginning(assembly.spec(), &path, args.resume.is_some(), from));
     if !args.quiet {
-        output::remark(&report::beginning(&spec, &path));
         observers.push(&mut progress);
     }
-    let trained = train(&assembly, &*executor, &mut observers, &stop);
+    let trained = train_from(from, &assembly, &*executor, &mut observers, &stop);
     drop(observers);
     progress.finish();
-    let summary = folder.finish(&assembly, &trained?)?;
+    let trained = trained.map_err(|error| ended(error, &mut folder))?;
+    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", path.display());
+    let finished = folder.finish(&assembly, &trained);
+    let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
     if !args.quiet {
         output::print(&report::training(&summary, &path))?;
     }
     Ok(())
+}
+
+fn keeping(args: &TrainArgs) -> Keeping {
+    Keeping { checkpoint_every: args.checkpoint_every, ..Keeping::default() }
+}
+
+/// A new run.
+fn begun(args: &TrainArgs) -> Result<(Assembly, Resumed), Failure> {
+    let mut further = Vec::new();
+    further.extend(args.seed.map(|seed| ("seed", seed.to_string())));
+    further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
+    let name = args.experiment.as_deref().unwrap_or_default();
+    let (spec, assembly) = experiment(name, &args.settings, &further)?;
+    let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
+    let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
+    // A folder that cannot be had is known before the work begins.
+    let folder = RunFolder::create(&path, &spec, &provenance, keeping(args)).map_err(Failure::input)?;
+    Ok((assembly, folder.into()))
+}
+
+/// A run that was interrupted.
+fn taken_up(run: &Path, args: &TrainArgs) -> Result<(Assembly, Resumed), Failure> {
+    let assembly = saved_run(run_folder(run)?, &[])?.assembly().clone();
+    let provenance = Provenance::new(typed(), args.threads.get(), assembly.spec().seed);
+    let resumed = RunFolder::resume(run, assembly.spec(), provenance, keeping(args)).map_err(Failure::input)?;
+    Ok((assembly, resumed))
+}
+
+/// What a training that did not come to its end leaves, and the way on.
+fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
+    let run = folder.path().display().to_string();
+    let resume = format!("`hwasp train --resume {run}` goes on");
+    if let Err(unsaved) = folder.settle() {
+        let hint = format!("the last checkpoint is as it was; with the way free, {resume} from there");
+        return Failure::from(unsaved).hint(&hint);
+    }
+    match &error {
+        TrainError::Interrupted { .. } => Failure::interrupted(error).hint(&format!("{resume} from there")),
+        _ => match folder.fault() {
+            Some(fault) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", fault.display())),
+            None => error.into(),
+        },
+    }
 }

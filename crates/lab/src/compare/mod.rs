@@ -1,14 +1,13 @@
 //! Comparisons: a grid of methods and seeds under one budget, run in parallel, and what it says.
 //!
 //! A comparison is a folder. Each cell of the grid is a run folder in it, under `cells/`: a finished one is not run again,
-//! an unfinished one is begun anew, and one of another experiment is refused.
+//! an unfinished one is resumed, and one of another experiment is refused.
 
 mod contender;
 mod figures;
 mod report;
 mod reproduce;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -24,11 +23,11 @@ use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::MetricsTable;
 use crate::observer::{Event, Observer, ObserverError};
 use crate::plot::{PlotError, PlotOptions};
-use crate::run_folder::{Provenance, RunError, RunFolder, SUMMARY, SavedRun, io_error};
+use crate::run_folder::{EXPERIMENT, Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, saved_spec};
 use crate::spec::{Layers, SpecErrors, resolve};
 use crate::stats::StatsError;
 use crate::summary::Summary;
-use crate::train::{TrainError, train};
+use crate::train::{TrainError, train_from};
 
 /// Why a comparison cannot be made.
 #[derive(Debug, Error)]
@@ -139,7 +138,7 @@ impl Grid {
 }
 
 /// Runs what is not finished yet, cells in parallel, each on one thread, and returns what is. Cells that failed are told to
-/// `watch` and missing from the result. When `stop` is set, cells under way are left unfinished.
+/// `watch` and missing from the result. When `stop` is set, cells under way are left as they are, to be resumed.
 pub fn run(
     cells: &[Cell],
     executor: &dyn Executor,
@@ -165,23 +164,20 @@ pub fn run(
 }
 
 impl Cell {
-    /// Whether its run is there and done. What a killed run has left is cleared away.
+    /// Whether its run is there and done.
     fn is_finished(&self) -> Result<bool, CompareError> {
-        if !self.path.exists() {
+        if !self.is_begun() {
             return Ok(false);
         }
-        let io = |action, source| io_error(action, &self.path, source);
-        // A run that was killed at once has left nothing, or a file half written.
-        let mut entries = fs::read_dir(&self.path).map_err(|e| io("read", e))?;
-        let begun = entries.any(|entry| entry.is_ok_and(|e| e.path().extension().is_none_or(|x| x != "partial")));
-        if begun && *SavedRun::open(&self.path)?.assembly().spec() != *self.assembly.spec() {
+        if saved_spec(&self.path, &[])? != *self.assembly.spec() {
             return Err(CompareError::Other { path: self.path.clone() });
         }
-        if self.path.join(SUMMARY).is_file() {
-            return Ok(true);
-        }
-        fs::remove_dir_all(&self.path).map_err(|e| io("clear", e))?;
-        Ok(false)
+        Ok(self.path.join(SUMMARY).is_file())
+    }
+
+    /// Whether there is something to go on from.
+    fn is_begun(&self) -> bool {
+        self.path.join(EXPERIMENT).is_file()
     }
 
     fn result(&self) -> Result<CellResult, CompareError> {
@@ -197,16 +193,28 @@ impl Cell {
         stop: &AtomicBool,
     ) -> Result<Option<CellResult>, CompareError> {
         let spec = self.assembly.spec();
-        let mut folder = RunFolder::create(&self.path, spec, &Provenance::new(command_line.to_vec(), 1, self.seed))?;
+        let (provenance, keeping) = (Provenance::new(command_line.to_vec(), 1, self.seed), Keeping::default());
+        let Resumed { mut folder, found } = if self.is_begun() {
+            RunFolder::resume(&self.path, spec, provenance, keeping)?
+        } else {
+            RunFolder::create(&self.path, spec, &provenance, keeping)?.into()
+        };
+        found.warn();
         let mut told = Told { index, watch };
         let mut observers: Vec<&mut dyn Observer> = vec![&mut folder, &mut told];
-        match train(&self.assembly, &Serial, &mut observers, stop) {
-            // A cell that was cut short would be compared at another budget.
-            Ok(trained) if trained.stopped => Ok(None),
+        let from = found.checkpoint.as_ref();
+        let trained = train_from(from, &self.assembly, &Serial, &mut observers, stop);
+        drop(observers);
+        match trained {
             Ok(trained) => {
-                drop(observers);
                 folder.finish(&self.assembly, &trained)?;
+                // There may be hundreds of cells.
+                folder.remove_checkpoints()?;
                 self.result().map(Some)
+            }
+            Err(TrainError::Interrupted { .. }) => {
+                folder.settle()?;
+                Ok(None)
             }
             Err(error) => {
                 watch.failed(index, &error);

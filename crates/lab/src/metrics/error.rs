@@ -78,6 +78,9 @@ pub enum MetricsError {
         /// The line.
         line: usize,
     },
+    /// A table of something else.
+    #[error("its columns are those of another experiment")]
+    Another,
     /// Too many rows.
     #[error("the table has more than {MOST_ROWS} rows")]
     Rows,

@@ -1,0 +1,147 @@
+//! The loop that follows the policy's gradient: jobs out, a batch in, an update, an event.
+
+use hwasp_algos::{Archive, Exchange, Learner, Persist, StateError, UpdateMetrics};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, Sampler};
+
+use crate::assemble::Assembly;
+use crate::checkpoint::Checkpoint;
+use crate::learned::{Clock, Learned, Loop};
+use crate::observer::{Event, Fault};
+use crate::train::TrainError;
+
+/// Iterations in a row in which the physics of most episodes may fail.
+const MOST_FAULTY_ITERATIONS: u64 = 3;
+
+/// A training by gradients between two iterations.
+pub(crate) struct Gradient<'a> {
+    assembly: &'a Assembly,
+    sampler: Sampler,
+    learner: Box<dyn Learner>,
+    pub(crate) learned: Learned,
+}
+
+impl Persist for Gradient<'_> {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.part("loop", &mut self.learned)?;
+        with.part("learner", &mut *self.learner)
+    }
+}
+
+/// Follows the policy's gradient, from the beginning or from where a training was interrupted.
+pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
+    let budget = assembly.spec().train.env_steps;
+    let mut state = Gradient::new(assembly, from)?;
+    run.clock = Clock::start(state.learned.wall_s);
+    while state.learned.env_steps < budget {
+        if run.stopped() {
+            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+            return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
+        }
+        state.iterate(run)?;
+        if run.observer.due() {
+            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+        }
+    }
+    // What is left to do, an evaluation, may be long.
+    run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+    state.learned.params = state.params();
+    Ok(state.learned)
+}
+
+impl<'a> Gradient<'a> {
+    /// From the beginning, or from where a training was interrupted.
+    pub(crate) fn new(assembly: &'a Assembly, from: Option<&Archive>) -> Result<Self, StateError> {
+        let episode_steps = assembly.spec().train.episode_steps;
+        let sampler =
+            Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(episode_steps));
+        let learner = assembly.learner(assembly.init());
+        let mut state = Self { assembly, sampler, learner, learned: Learned::default() };
+        if let Some(archive) = from {
+            state.load(archive)?;
+        }
+        Ok(state)
+    }
+
+    pub(crate) fn params(&self) -> Vec<f32> {
+        self.learner.params().to_vec()
+    }
+
+    fn checkpoint(&mut self) -> Result<Checkpoint, StateError> {
+        let archive = self.save()?;
+        Ok(self.learned.checkpoint(archive))
+    }
+
+    /// One iteration. One that fails leaves the learner as it was, and is told to the observer with all that it takes to
+    /// repeat it.
+    fn iterate(&mut self, run: &mut Loop<'_>) -> Result<(), TrainError> {
+        let progress = self.progress();
+        let (batch, error) = match self.collect(run.executor) {
+            Ok(batch) => match self.learn(run.executor, &batch, progress) {
+                Ok(update) => {
+                    let spec = self.assembly.spec();
+                    self.learned.env_steps += batch.env_steps();
+                    self.learned.discarded_episodes += batch.faults.len() as u64;
+                    let policy = &self.assembly.policy;
+                    let totals = policy.space().totals(&policy.design(self.learner.params()));
+                    self.learned.tell(mean_returns(&batch, spec.discount()), Some(update), totals, run)?;
+                    return Ok(());
+                }
+                Err(error) => (Some(batch), error),
+            },
+            Err(error) => (None, error),
+        };
+        let checkpoint = self.checkpoint()?;
+        let what = error.to_string();
+        run.observer.on(Event::Failed(&Fault { checkpoint: &checkpoint, batch: batch.as_ref(), what: &what }))?;
+        Err(error)
+    }
+
+    /// The share of the budget that is spent.
+    pub(crate) fn progress(&self) -> f64 {
+        self.learned.env_steps as f64 / self.assembly.spec().train.env_steps as f64
+    }
+
+    /// The episodes of the iteration at hand.
+    pub(crate) fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
+        let train = &self.assembly.spec().train;
+        let asked = Episodes {
+            seed: self.assembly.spec().seed,
+            iteration: self.learned.iterations,
+            indices: 0..train.episodes_per_iteration as u64,
+            progress: self.progress(),
+            kind: EpisodeKind::Training,
+        };
+        Ok(self.sampler.collect(executor, self.learner.params(), &asked)?)
+    }
+
+    /// The update of the iteration at hand.
+    pub(crate) fn learn(
+        &mut self,
+        executor: &dyn Executor,
+        batch: &Batch,
+        progress: f64,
+    ) -> Result<UpdateMetrics, TrainError> {
+        let asked = self.assembly.spec().train.episodes_per_iteration;
+        let faulty = 2 * batch.faults.len() > asked;
+        let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
+        if in_a_row >= MOST_FAULTY_ITERATIONS
+            && let Some(first) = batch.faults.first()
+        {
+            return Err(TrainError::Physics {
+                iterations: in_a_row,
+                failed: batch.faults.len(),
+                asked,
+                first: first.clone(),
+            });
+        }
+        let update = self.learner.update(executor, batch, progress, self.learned.iterations)?;
+        self.learned.faulty_iterations = in_a_row;
+        Ok(update)
+    }
+}
+
+/// The mean discounted and undiscounted returns of a batch's episodes.
+pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
+    let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
+    (mean(batch.returns(discount)), mean(batch.returns(1.0)))
+}

@@ -1,0 +1,82 @@
+//! One iteration of a run once more, from the checkpoint before it.
+
+use std::path::{Path, PathBuf};
+
+use hwasp_algos::UpdateMetrics;
+use hwasp_core::Executor;
+use thiserror::Error;
+
+use crate::checkpoint::{Checkpoint, Header, LARGEST_CHECKPOINT, experiment_hash, has_batch, has_this_batch};
+use crate::gradient::Gradient;
+use crate::run_folder::{EXPERIMENT, RunError, SavedRun, encode, read_limited};
+use crate::train::TrainError;
+
+/// Why an iteration cannot be repeated.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// Not a file of a run folder.
+    #[error(
+        "{path} is not in a run folder: name a file of its `faults` or `checkpoints`, such as \
+         RUN/faults/iteration-00000012.safetensors"
+    )]
+    Place {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A method that has generations.
+    #[error("{path} is of a search: resume the run to see its generation again")]
+    Search {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The run folder or the file.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// An iteration, repeated.
+#[derive(Debug)]
+pub struct Replay {
+    /// Its number, from 0.
+    pub iteration: u64,
+    /// Real simulator steps before it.
+    pub env_steps: u64,
+    /// What failed then, if something did.
+    pub fault: Option<String>,
+    /// Whether the episodes have the bits of those that were written down, where they were.
+    pub same_batch: Option<bool>,
+    /// What happens now.
+    pub outcome: Result<UpdateMetrics, TrainError>,
+}
+
+/// Repeats the iteration that follows a checkpoint: a file of a run folder's `faults`, or of its `checkpoints`.
+pub fn replay(path: &Path, executor: &dyn Executor) -> Result<Replay, ReplayError> {
+    let bytes = read_limited(path, LARGEST_CHECKPOINT)?;
+    let run = path.canonicalize().ok().and_then(|full| Some(full.parent()?.parent()?.to_owned()));
+    let run = run.ok_or_else(|| ReplayError::Place { path: path.to_owned() })?;
+    let saved = SavedRun::open(&run).map_err(|error| match error {
+        RunError::NotARun { .. } => ReplayError::Place { path: path.to_owned() },
+        other => other.into(),
+    })?;
+    let assembly = saved.assembly();
+    let checkpoint_error = |source| RunError::Checkpoint { path: path.to_owned(), source };
+    let experiment = assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+    let checkpoint = Checkpoint::decode(&bytes, &experiment_hash(&experiment)).map_err(checkpoint_error)?;
+    let fault = Header::read(&bytes).map_err(checkpoint_error)?.fault;
+    if assembly.spec().method.searches() {
+        return Err(ReplayError::Search { path: path.to_owned() });
+    }
+    let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };
+    let mut state = Gradient::new(assembly, Some(&checkpoint.archive)).map_err(|e| state_error(e.into()))?;
+    let progress = state.progress();
+    let (same_batch, outcome) = match state.collect(executor) {
+        Ok(batch) => {
+            let archive = &checkpoint.archive;
+            let same = has_batch(archive).then(|| has_this_batch(archive, &batch));
+            (same, state.learn(executor, &batch, progress))
+        }
+        Err(error) => (None, Err(error)),
+    };
+    let Checkpoint { iteration, env_steps, .. } = checkpoint;
+    Ok(Replay { iteration, env_steps, fault, same_batch, outcome })
+}

@@ -1,0 +1,108 @@
+//! Run folders read back.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::{EXPERIMENT, LARGEST_SUMMARY, METRICS, POLICY, RunError, SUMMARY, encode, io_error, read_limited};
+use crate::assemble::Assembly;
+use crate::checkpoint::{CheckpointStore, experiment_hash};
+use crate::files::Disk;
+use crate::metrics::MetricsTable;
+use crate::plot::{Curve, PlotOptions, XAxis};
+use crate::policy_file::{LARGEST_POLICY, read_policy};
+use crate::spec::{self, Layers, Spec};
+use crate::summary::Summary;
+
+/// A run that was written before.
+pub struct SavedRun {
+    path: PathBuf,
+    assembly: Assembly,
+}
+
+impl SavedRun {
+    /// Opens a run folder and puts its experiment together again.
+    pub fn open(path: &Path) -> Result<Self, RunError> {
+        Self::open_with(path, &[])
+    }
+
+    /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
+    pub fn open_with(path: &Path, assignments: &[String]) -> Result<Self, RunError> {
+        let spec = saved_spec(path, assignments)?;
+        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&spec)? })
+    }
+
+    /// Its experiment, ready to run.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// The trained parameters; those of the newest checkpoint where the training did not come to its end.
+    pub fn params(&self) -> Result<Vec<f32>, RunError> {
+        let path = self.path.join(POLICY);
+        if !path.is_file() {
+            return self.params_so_far();
+        }
+        let bytes = read_limited(&path, LARGEST_POLICY)?;
+        read_policy(&self.assembly.policy, &bytes).map_err(|source| RunError::Policy { path, source })
+    }
+
+    fn params_so_far(&self) -> Result<Vec<f32>, RunError> {
+        let experiment = self.assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+        let store = CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment));
+        let found = store.newest()?;
+        found.warn();
+        let unfinished = || RunError::Unfinished { path: self.path.clone(), file: POLICY };
+        let checkpoint = found.checkpoint.ok_or_else(unfinished)?;
+        let steps = checkpoint.env_steps;
+        tracing::warn!("{} did not come to its end: this is what it was after {steps} steps", self.path.display());
+        self.assembly
+            .params_at(&checkpoint)
+            .map_err(|source| RunError::State { path: self.path.clone(), source: Box::new(source) })
+    }
+
+    /// Its figures.
+    pub fn summary(&self) -> Result<Summary, RunError> {
+        let path = self.path.join(SUMMARY);
+        if !path.is_file() {
+            return Err(RunError::Unfinished { path: self.path.clone(), file: SUMMARY });
+        }
+        let bytes = read_limited(&path, LARGEST_SUMMARY)?;
+        let decode = |e: serde_json::Error| RunError::Decode { path, message: e.to_string() };
+        serde_json::from_slice(&bytes).map_err(decode)
+    }
+
+    /// Its learning curve, labelled with experiment and method.
+    pub fn curve(&self, axis: XAxis) -> Result<Curve, RunError> {
+        let table = self.metrics()?;
+        let spec = self.assembly.spec();
+        let label = format!("{} · {}", spec.name, spec.method.name());
+        Ok(Curve::from_table(label, &table, axis, spec.train.nominal_steps))
+    }
+
+    /// Its learning curve as a table.
+    pub fn metrics(&self) -> Result<MetricsTable, RunError> {
+        let path = self.path.join(METRICS);
+        let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
+        MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
+    }
+
+    /// Axis texts, units and known optima for its picture.
+    pub fn plot_options(&self, title: String) -> PlotOptions {
+        self.assembly.plot_options(title)
+    }
+}
+
+/// The experiment of a run folder, with values of it set anew (`key=value`).
+pub(crate) fn saved_spec(path: &Path, assignments: &[String]) -> Result<Spec, RunError> {
+    let file = path.join(EXPERIMENT);
+    if !file.is_file() {
+        return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
+    }
+    let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
+    let text = String::from_utf8_lossy(&text);
+    let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
+    let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
+    Ok(spec::resolve(layers, None)?)
+}

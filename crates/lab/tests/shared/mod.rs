@@ -1,0 +1,88 @@
+//! Small trainings of every kind, and what they come to.
+
+#![allow(dead_code, clippy::unwrap_used)] // each test uses some of it; helpers of tests are tests too
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use hwasp_core::{Executor, Serial, Threads};
+use hwasp_lab::checkpoint::Checkpoint;
+use hwasp_lab::metrics::MetricsRow;
+use hwasp_lab::spec::{self, Spec};
+use hwasp_lab::{Assembly, Event, Observer, ObserverError, Provenance, Trained, train_from};
+
+pub(crate) type Settings = &'static [(&'static str, &'static str)];
+
+const MLP: &str = "mlp";
+
+/// Every kind of thing that learns: method, settings.
+pub(crate) const KINDS: [(&str, Settings); 9] = [
+    ("hwasp", &[]),
+    ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
+    ("hwasp", &[("learner.algorithm", "trpo"), ("baseline.kind", MLP)]),
+    ("cmaes", &[]),
+    ("cmaes", &[("cmaes.separable", "true"), ("cmaes.restarts", "2")]),
+    ("ars", &[("ars.variant", "v2-t"), ("ars.directions", "8")]),
+    ("cmaes-rl", &[("cmaes.popsize", "5"), ("train.env_steps", "24000")]),
+    ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000"), ("learner.algorithm", "trpo")]),
+    ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
+];
+
+/// A training on the reach problem: 40 episodes of 30 steps an iteration.
+pub(crate) fn small(method: &str, settings: Settings) -> Spec {
+    let few = [("train.env_steps", "9600"), ("train.evaluation_episodes", "4"), ("search.inner_env_steps", "2400")];
+    let steps = if matches!(method, "cmaes" | "ars") { "40000" } else { few[0].1 };
+    let layers = few.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = layers.with_override("train.env_steps", steps);
+    let layers = settings.iter().fold(layers, |layers, (k, v)| layers.with_override(k, v));
+    spec::resolve(layers, Some(method)).unwrap()
+}
+
+pub(crate) fn empty(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    path
+}
+
+pub(crate) fn provenance(spec: &Spec) -> Provenance {
+    Provenance::new(vec!["test".into()], 1, spec.seed)
+}
+
+/// Keeps rows, and every checkpoint there can be.
+#[derive(Default)]
+pub(crate) struct Keeper {
+    pub(crate) rows: Vec<MetricsRow>,
+    pub(crate) checkpoints: Vec<Checkpoint>,
+}
+
+impl Observer for Keeper {
+    fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
+        match event {
+            Event::Iteration(row) => self.rows.push(MetricsRow { wall_s: 0.0, ..row.clone() }),
+            Event::Checkpoint(checkpoint) => self.checkpoints.push(checkpoint.clone()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn due(&self) -> bool {
+        true
+    }
+}
+
+pub(crate) fn executor(threads: usize) -> Box<dyn Executor> {
+    if threads == 1 { Box::new(Serial) } else { Box::new(Threads::new(threads).unwrap()) }
+}
+
+pub(crate) fn run(assembly: &Assembly, from: Option<&Checkpoint>, threads: usize) -> (Trained, Keeper) {
+    let mut keeper = Keeper::default();
+    let trained = train_from(from, assembly, &*executor(threads), &mut keeper, &AtomicBool::new(false)).unwrap();
+    (trained, keeper)
+}
+
+/// Everything of a result but the time it took, so that equal texts are equal bits.
+pub(crate) fn told(trained: &Trained) -> String {
+    let bits: Vec<u32> = trained.params.iter().map(|p| p.to_bits()).collect();
+    format!("{bits:?} {:?}", Trained { wall_s: 0.0, ..trained.clone() })
+}

@@ -42,11 +42,11 @@ const MOST_THREADS: u64 = 1024;
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// The form of what goes to standard error, and into a run's train.log: text, or a JSON object per line
-    #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text)]
+    /// The form of remarks and errors, and of a run's train.log
+    #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t = LogFormat::Text)]
     pub(crate) log_format: LogFormat,
-    /// The least that is told there; train.log has all down to `debug`
-    #[arg(long, global = true, value_enum, default_value_t = LogLevel::Info)]
+    /// The least of them that is shown; train.log has all
+    #[arg(long, global = true, value_enum, value_name = "LEVEL", default_value_t = LogLevel::Info)]
     pub(crate) log_level: LogLevel,
 }
 
@@ -163,6 +163,7 @@ impl SettingsArgs {
 }
 
 #[derive(Debug, clap::Args)]
+#[command(override_usage = "hwasp train [OPTIONS] <EXPERIMENT>\n       hwasp train [OPTIONS] --resume <RUN>")]
 pub(crate) struct TrainArgs {
     /// A name from `hwasp list`, or the path of a TOML file
     #[arg(required_unless_present = "resume")]

@@ -16,7 +16,7 @@ use crate::train::TrainError;
 pub enum ReplayError {
     /// Not a file of a run folder.
     #[error(
-        "{path} is not in a run folder: name a file of its `faults` or `checkpoints`, such as \
+        "{path} is no checkpoint of a run folder: name a file of its `faults` or `checkpoints`, such as \
          RUN/faults/iteration-00000012.safetensors"
     )]
     Place {
@@ -51,14 +51,15 @@ pub struct Replay {
 
 /// Repeats the iteration that follows a checkpoint: a file of a run folder's `faults`, or of its `checkpoints`.
 pub fn replay(path: &Path, executor: &dyn Executor) -> Result<Replay, ReplayError> {
-    let bytes = read_limited(path, LARGEST_CHECKPOINT)?;
-    let run = path.canonicalize().ok().and_then(|full| Some(full.parent()?.parent()?.to_owned()));
+    let file = path.canonicalize().ok().filter(|file| file.is_file());
+    let run = file.and_then(|file| Some(file.parent()?.parent()?.to_owned()));
     let run = run.ok_or_else(|| ReplayError::Place { path: path.to_owned() })?;
     let saved = SavedRun::open(&run).map_err(|error| match error {
         RunError::NotARun { .. } => ReplayError::Place { path: path.to_owned() },
         other => other.into(),
     })?;
     let assembly = saved.assembly();
+    let bytes = read_limited(path, LARGEST_CHECKPOINT)?;
     let checkpoint_error = |source| RunError::Checkpoint { path: path.to_owned(), source };
     let experiment = assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
     let checkpoint = Checkpoint::decode(&bytes, &experiment_hash(&experiment)).map_err(checkpoint_error)?;

@@ -1,6 +1,6 @@
 //! `hwasp replay`.
 
-use hwasp_lab::{ReplayError, RunError, replay};
+use hwasp_lab::replay;
 
 use super::executor;
 use crate::args::ReplayArgs;
@@ -9,9 +9,6 @@ use crate::{output, report};
 
 pub(crate) fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let executor = executor(args.threads)?;
-    let replay = replay(&args.file, &*executor).map_err(|error| match error {
-        ReplayError::Run(error @ RunError::Io { .. }) => Failure::input(error),
-        other => Failure::input(other),
-    })?;
+    let replay = replay(&args.file, &*executor).map_err(Failure::input)?;
     Ok(output::print(&report::replay(&replay))?)
 }

@@ -26,5 +26,5 @@ fn help_of_every_command() {
 fn without_arguments_the_help_is_shown_as_an_error() {
     let output = Sandbox::new("no-arguments").run("");
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("Usage: hwasp <COMMAND>"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("Usage: hwasp [OPTIONS] <COMMAND>"));
 }

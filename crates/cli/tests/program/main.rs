@@ -12,5 +12,7 @@ mod folders;
 mod help;
 mod pipes;
 mod play;
+#[cfg(unix)]
+mod resume;
 mod runs;
 mod sandbox;

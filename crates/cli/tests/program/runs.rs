@@ -1,11 +1,6 @@
 //! Trainings and what can be done with them.
 
 use std::fs;
-#[cfg(unix)]
-use std::{
-    process::Stdio,
-    time::{Duration, Instant},
-};
 
 use crate::sandbox::{Sandbox, TINY, without_figures};
 
@@ -97,29 +92,6 @@ fn plots() {
     assert!(both.contains("Gears"), "{both}");
     let png = sandbox.read("both.PNG");
     assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000, "{} bytes", png.len());
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_training_keeps_what_it_has() {
-    let sandbox = Sandbox::new("interrupted");
-    let line = "train reach --env-steps 1e11 --set train.evaluation_episodes=20 --out run";
-    let mut command = sandbox.command(line);
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // Two iterations have to be there; a child that cannot begin would never write them.
-    let rows = || fs::read_to_string(sandbox.path("run/metrics.csv")).map_or(0, |text| text.lines().count());
-    let began = Instant::now();
-    while rows() < 3 && began.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let pid = child.id().to_string();
-    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success(), "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("(stopped early)"), "{output:?}");
-    let summary: serde_json::Value = serde_json::from_slice(&sandbox.read("run/summary.json")).unwrap();
-    assert_eq!(summary["stopped"], true);
-    assert!(sandbox.run("eval run").status.success());
 }
 
 /// Contenders that are none, one named twice, a comparison, and the same again, which trains nothing.

@@ -21,7 +21,7 @@ impl Sandbox {
         Self(path)
     }
 
-    /// One with a finished run in the folder `run`.
+    /// One with a finished run in the folder `run`, without its checkpoints.
     pub(crate) fn with_run(name: &str) -> Self {
         static RUN: OnceLock<Sandbox> = OnceLock::new();
         let trained = RUN.get_or_init(|| {
@@ -33,6 +33,9 @@ impl Sandbox {
         fs::create_dir(sandbox.path("run")).unwrap();
         for file in fs::read_dir(trained.path("run")).unwrap() {
             let file = file.unwrap();
+            if file.path().is_dir() {
+                continue;
+            }
             fs::copy(file.path(), sandbox.path("run").join(file.file_name())).unwrap();
         }
         sandbox

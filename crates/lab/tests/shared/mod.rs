@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_lab::checkpoint::Checkpoint;
@@ -85,4 +85,25 @@ pub(crate) fn run(assembly: &Assembly, from: Option<&Checkpoint>, threads: usize
 pub(crate) fn told(trained: &Trained) -> String {
     let bits: Vec<u32> = trained.params.iter().map(|p| p.to_bits()).collect();
     format!("{bits:?} {:?}", Trained { wall_s: 0.0, ..trained.clone() })
+}
+
+/// Sets the flag after some checkpoints or rows, as a signal would.
+pub(crate) struct Stopper<'a> {
+    pub(crate) inner: &'a mut dyn Observer,
+    pub(crate) stop: &'a AtomicBool,
+    pub(crate) after: usize,
+}
+
+impl Observer for Stopper<'_> {
+    fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
+        if matches!(event, Event::Checkpoint(_)) {
+            self.after = self.after.saturating_sub(1);
+            self.stop.fetch_or(self.after == 0, Ordering::Relaxed);
+        }
+        self.inner.on(event)
+    }
+
+    fn due(&self) -> bool {
+        self.inner.due()
+    }
 }

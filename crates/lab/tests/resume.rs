@@ -5,15 +5,15 @@
 mod shared;
 
 use std::fs;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-use hwasp_core::{EpisodeKind, Episodes, Sampler, Serial};
+use hwasp_core::{End, EpisodeKind, Episodes, Sampler, Serial, Step};
 use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::{
     Assembly, Event, Fault, Keeping, Observer, RunError, RunFolder, SavedRun, TrainError, replay, train, train_from,
 };
-use shared::{KINDS, Stopper, empty, executor, provenance, run, small, told};
+use shared::{KINDS, Keeper, Stopper, empty, executor, provenance, run, small, spoil, told};
 
 /// At every moment at which a checkpoint can be had: between iterations, between generations, within a generation, and
 /// within the training of a candidate.
@@ -219,4 +219,46 @@ fn an_iteration_that_failed_can_be_repeated_from_its_folder() {
     assert_eq!((replayed.same_batch, replayed.fault), (None, None));
     let nowhere = replay(&path.join("experiment.toml"), &Serial).unwrap_err().to_string();
     assert!(nowhere.contains("is no checkpoint of a run folder"), "{nowhere}");
+}
+
+/// The state before an iteration whose rewards are no numbers: written down, and the last sound state kept.
+#[test]
+fn an_iteration_that_fails_leaves_the_state_before_it() {
+    let spec = small("hwasp", &[]);
+    let (path, mut assembly) = (empty("failed"), Assembly::new(&spec).unwrap());
+    let whole = run(&assembly, None, 1).0;
+    let sound = assembly.clone();
+    let steps = AtomicU64::new(0);
+    spoil(&mut assembly, move |_, step| {
+        let spoiled = steps.fetch_add(1, Ordering::Relaxed) > 3000;
+        if spoiled { Step { reward: f64::NAN, ..step } } else { step }
+    });
+    let mut folder = RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
+    let error = train(&assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, TrainError::Rollout(_)), "{error}");
+    assert!(error.to_string().contains("of iteration 2 (seed 0) failed at step"), "{error}");
+    let fault = folder.fault().unwrap().to_owned();
+    drop(folder);
+    let replayed = replay(&fault, &Serial).unwrap();
+    assert_eq!((replayed.iteration, replayed.env_steps), (2, 2400));
+    assert_eq!(replayed.fault, Some(error.to_string()));
+    // In the plant that is not spoiled the training goes on from there.
+    let found = RunFolder::resume(&path, &spec, provenance(&spec), Keeping::default()).unwrap().found;
+    assert_eq!(told(&run(&sound, found.checkpoint.as_ref(), 1).0), told(&whole));
+}
+
+#[test]
+fn physics_that_fail_again_and_again_end_the_training_with_a_reason() {
+    let mut assembly = Assembly::new(&small("hwasp", &[])).unwrap();
+    let steps = AtomicU64::new(0);
+    spoil(&mut assembly, move |_, step| {
+        let spoiled = steps.fetch_add(1, Ordering::Relaxed) % 20 == 0;
+        if spoiled { Step { end: Some(End::Faulted), ..step } } else { step }
+    });
+    let mut keeper = Keeper::default();
+    let error = train(&assembly, &Serial, &mut keeper, &AtomicBool::new(false)).unwrap_err();
+    let TrainError::Physics { iterations, failed, asked, .. } = &error else { panic!("{error}") };
+    assert!((*iterations, *asked) == (3, 40) && *failed > 20, "{error}");
+    assert_eq!(keeper.rows.len(), 2);
+    assert!(error.to_string().contains("in 3 iterations in a row"), "{error}");
 }

@@ -2,12 +2,15 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
+mod shared;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hwasp_core::{EnvSpec, Environment, Serial, Step, Stream, Threads};
+use hwasp_core::{Serial, Step, Threads};
 use hwasp_lab::metrics::MetricsRow;
 use hwasp_lab::{AssembleError, Assembly, Event, Observer, ObserverError, Trained, evaluate, spec, train};
+use shared::spoil;
 
 /// Small searches on the reach problem: 30 steps an episode.
 fn assembly(method: &str, settings: &[(&str, &str)]) -> Result<Assembly, AssembleError> {
@@ -107,40 +110,7 @@ fn searches_learn_to_reach() {
     }
 }
 
-/// A plant that gives no number where the motor is driven too fast, and counts how often it did; the episode ends there.
-struct Fragile {
-    inner: Box<dyn Environment>,
-    faults: Arc<AtomicU64>,
-}
-
 const FASTEST: f64 = 0.3; // m/s
-
-impl Environment for Fragile {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-    }
-
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
-        let step = self.inner.step(effort, command);
-        if effort[0].abs() <= FASTEST {
-            return step;
-        }
-        self.faults.fetch_add(1, Ordering::Relaxed);
-        Step { reward: f64::NAN, ..step }
-    }
-}
 
 /// Candidates whose episode or whose training fails are counted, charged in full, and passed over.
 #[test]
@@ -155,12 +125,16 @@ fn failing_candidates_rank_last_and_are_charged() {
     for (method, settings, each) in settings {
         let mut assembly = assembly(method, settings).unwrap();
         let sound = run(&assembly, 1).0;
-        let (faults, whole) = (Arc::new(AtomicU64::new(0)), assembly.problem.training.make.clone());
+        let faults = Arc::new(AtomicU64::new(0));
         let counted = faults.clone();
-        assembly.problem.training.make = Arc::new(move |horizon| {
-            Box::new(Fragile { inner: whole.make(horizon), faults: counted.clone() }) as Box<dyn Environment>
+        // No number where the motor is driven too fast; the episode ends there.
+        spoil(&mut assembly, move |effort, step| {
+            if effort[0].abs() <= FASTEST {
+                return step;
+            }
+            counted.fetch_add(1, Ordering::Relaxed);
+            Step { reward: f64::NAN, ..step }
         });
-        assembly.problem.deployment = assembly.problem.training.clone();
         let trained = run(&assembly, 1).0;
         let failed = trained.failed_candidates.unwrap();
         let candidates = trained.iterations * assembly.generation().unwrap().0 as u64;

@@ -117,7 +117,7 @@ impl CheckpointStore {
     ///
     /// # Errors
     /// [`RunError::Checkpoint`] where the newest one belongs to another experiment or to a newer program: that is nothing
-    /// that an older one could mend. And where there are some, but none is sound.
+    /// that an older one could mend. [`RunError::Unsound`] where there are some, but none is sound.
     pub fn newest(&self) -> Result<Found, RunError> {
         let mut found = Found::default();
         for (_, path) in numbered(&self.folder)?.into_iter().rev() {
@@ -133,10 +133,10 @@ impl CheckpointStore {
                 Err(error) => found.damaged.push((path, error)),
             }
         }
-        match found.damaged.pop() {
-            Some((path, source)) => Err(RunError::Checkpoint { path, source }),
-            None => Ok(found),
+        if found.damaged.is_empty() {
+            return Ok(found);
         }
+        Err(RunError::Unsound { folder: self.folder.clone(), damaged: found.damaged })
     }
 }
 

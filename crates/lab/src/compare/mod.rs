@@ -29,6 +29,9 @@ use crate::stats::StatsError;
 use crate::summary::Summary;
 use crate::train::{TrainError, train_from};
 
+/// The folder of the cells.
+const CELLS: &str = "cells";
+
 /// Why a comparison cannot be made.
 #[derive(Debug, Error)]
 pub enum CompareError {
@@ -52,12 +55,18 @@ pub enum CompareError {
         hint: String,
     },
     /// A contender named twice.
-    #[error("`{0}` is named twice")]
+    #[error("`{0}` is named twice; name it once, and say with --seeds how often it is to be trained")]
     Twice(String),
     /// A cell that holds a run of another experiment.
     #[error("{path} holds another experiment, or one with other settings; name another folder with --out")]
     Other {
         /// The cell.
+        path: PathBuf,
+    },
+    /// A place where there is something else.
+    #[error("{path} is no folder of a comparison, and what is in it is not overwritten; name another one with --out")]
+    Taken {
+        /// The place.
         path: PathBuf,
     },
     /// A folder or file.
@@ -117,7 +126,14 @@ pub trait Watch: Sync {
 
 impl Grid {
     /// The cells, contender by contender, every one checked.
+    ///
+    /// # Errors
+    /// [`CompareError::Taken`] where `folder` holds something else, so that nothing is overwritten.
     pub fn cells(&self, folder: &Path) -> Result<Vec<Cell>, CompareError> {
+        let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
+        if folder.exists() && !folder.join(CELLS).is_dir() && !folder.read_dir().is_ok_and(is_empty) {
+            return Err(CompareError::Taken { path: folder.to_owned() });
+        }
         let mut cells = Vec::new();
         for (i, contender) in self.contenders.iter().enumerate() {
             if self.contenders[..i].iter().any(|other| other.label == contender.label) {
@@ -129,7 +145,7 @@ impl Grid {
                 let assembly = Assembly::new(&spec)
                     .map_err(|source| CompareError::Assemble { label: contender.label.clone(), source })?;
                 let name = format!("{}-seed{seed}", contender.folder_name());
-                let path = folder.join("cells").join(name);
+                let path = folder.join(CELLS).join(name);
                 cells.push(Cell { label: contender.label.clone(), seed, path, assembly });
             }
         }

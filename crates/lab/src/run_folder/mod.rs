@@ -73,6 +73,14 @@ pub enum RunError {
         /// What is wrong.
         source: CheckpointError,
     },
+    /// Checkpoints none of which can be used.
+    #[error("no checkpoint in {folder} is sound:{}", listed(damaged))]
+    Unsound {
+        /// The folder of the checkpoints.
+        folder: PathBuf,
+        /// What is wrong with each, the newest first.
+        damaged: Vec<(PathBuf, CheckpointError)>,
+    },
     /// A state in a checkpoint that does not belong to its experiment.
     #[error("{path}: {source}")]
     State {
@@ -149,6 +157,12 @@ const CURVES: &str = "curves.svg";
 
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.
 pub(crate) const LARGEST_SUMMARY: u64 = 16 << 20;
+
+/// Files and what is wrong with them, line by line.
+fn listed(damaged: &[(PathBuf, CheckpointError)]) -> String {
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    damaged.iter().take(3).map(|(path, error)| format!("\n  {}: {error}", name(path))).collect()
+}
 
 pub(crate) fn io_error(action: &'static str, path: &Path, source: io::Error) -> RunError {
     RunError::Io { action, path: path.to_owned(), source }

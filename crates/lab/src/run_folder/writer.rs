@@ -87,7 +87,7 @@ impl RunFolder {
     /// Creates the folder and writes what is known before training. A folder that exists is not touched.
     pub fn create(path: &Path, spec: &Spec, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         if let Some(parent) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-            fs::create_dir_all(parent).map_err(|source| io_error("create", parent, source))?;
+            fs::create_dir_all(parent).map_err(|source| io_error("create", path, told(parent, source)))?;
         }
         match fs::create_dir(path) {
             Ok(()) => {}
@@ -316,6 +316,12 @@ fn json(name: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunError>
     let mut text = serde_json::to_vec_pretty(value).map_err(|e| encode(name, &e))?;
     text.push(b'\n');
     Ok(text)
+}
+
+/// Why a folder cannot be created, in words where it is to lie in a file.
+fn told(folder: &Path, error: io::Error) -> io::Error {
+    let file = folder.ancestors().find(|above| above.is_file());
+    file.map_or(error, |file| io::Error::new(io::ErrorKind::NotADirectory, format!("{} is a file", file.display())))
 }
 
 /// Whether a folder has nothing but what a run that was killed at once leaves: a lock, a file half written.

@@ -1,12 +1,13 @@
 //! Experiments that come with the program, and files.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use super::fault::{SpecErrors, shorten};
 use super::layers::{LONGEST_FILE, Layers};
 use super::suggest::{listed, nearest};
+use crate::run_folder::EXPERIMENT;
 
 macro_rules! embedded {
     ($($name:literal),+ $(,)?) => {
@@ -42,25 +43,47 @@ pub fn load(name_or_path: &str) -> Result<Layers, SpecErrors> {
         let message = format!("there is neither an experiment nor a file `{}`", shorten(name_or_path, 120));
         let names = || EXPERIMENTS.iter().map(|(name, _)| *name);
         let mut hint = format!("the experiments are {}; files end in .toml", listed(names()));
-        if let Some(near) = nearest(name_or_path, names()) {
+        let file = format!("{name_or_path}.toml");
+        if Path::new(&file).is_file() {
+            hint = format!("did you mean the file `{}`? {hint}", shorten(&file, 120));
+        } else if let Some(near) = nearest(name_or_path, names()) {
             hint = format!("did you mean `{near}`? {hint}");
         }
         return Err(SpecErrors::single(name_or_path, message, Some(hint)));
     }
-    let bytes = read(path)
-        .map_err(|error| SpecErrors::single(name_or_path, format!("the file cannot be read: {error}"), None))?;
+    let bytes = read(path).map_err(|error| unreadable(name_or_path, &error))?;
     match String::from_utf8(bytes) {
         Ok(text) => Layers::from_text(name_or_path, &text),
         Err(error) => {
             let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = valid.split(|&byte| byte == b'\n').count();
-            Err(SpecErrors::single(name_or_path, format!("line {line} is no UTF-8 text"), None))
+            let hint = "an experiment is a text in TOML, saved as UTF-8".to_owned();
+            Err(SpecErrors::single(name_or_path, format!("line {line} is no UTF-8 text"), Some(hint)))
         }
     }
 }
 
+/// What to say of a path that is no file to read.
+fn unreadable(name: &str, error: &io::Error) -> SpecErrors {
+    let path = Path::new(name);
+    if path.is_dir() {
+        let file = path.join(EXPERIMENT);
+        let hint = match file.is_file() {
+            true => format!("the experiment of this run is {}", shorten(&file.display().to_string(), 120)),
+            false => "name a file, or an experiment of `hwasp list`".into(),
+        };
+        return SpecErrors::single(name, "this is a folder, where an experiment is a file".into(), Some(hint));
+    }
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let hint = match nearest(stem, EXPERIMENTS.iter().map(|(name, _)| *name)) {
+        Some(near) if !path.exists() => format!("`{near}` without .toml comes with the program"),
+        _ => "see that the path is right and that you may read it".into(),
+    };
+    SpecErrors::single(name, format!("the file cannot be read: {error}"), Some(hint))
+}
+
 /// A file's bytes, at most one more than may be; the length is refused where the text is read.
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(LONGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)

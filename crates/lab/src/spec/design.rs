@@ -213,10 +213,12 @@ fn check_disjoint(s: &Section<'_>, node: &Node, placed: &[PlacedRange]) {
     for pair in placed.windows(2) {
         if pair[1].first == pair[0].first && pair[1].range.start < pair[0].range.end {
             let message = format!(
-                "design.placements places {} twice: by {} and by {}",
+                "design.placements places {} twice: by {} as \"{}\" and by {} as \"{}\"",
                 name_of(&(pair[1].range.start..pair[1].range.start + 1), pair[1].group),
                 name_of(&pair[0].range, pair[0].group),
-                name_of(&pair[1].range, pair[1].group)
+                pair[0].place.name(),
+                name_of(&pair[1].range, pair[1].group),
+                pair[1].place.name(),
             );
             let hint = "let every parameter be in one of them".to_owned();
             s.reader.fault(Some(&node.origin), "design.placements", message, Some(hint));

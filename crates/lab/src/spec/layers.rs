@@ -35,8 +35,8 @@ impl Layers {
     /// Reads a file's text; `name` is what messages call it. Fails on what is no TOML, with every such line.
     pub fn from_text(name: &str, text: &str) -> Result<Self, SpecErrors> {
         if text.len() > LONGEST_FILE {
-            let message = format!("{} bytes are more than an experiment may have, {LONGEST_FILE}", text.len());
-            return Err(SpecErrors::single(name, message, None));
+            let message = format!("it has more than {LONGEST_FILE} bytes, the most that an experiment may have");
+            return Err(SpecErrors::single(name, message, Some("is this the right file?".into())));
         }
         let file = Source::File { name: name.into(), text: Arc::from(text) };
         let parsed = parse(&file, text)?;
@@ -199,6 +199,7 @@ fn parse(file: &Source, text: &str) -> Result<Table, SpecErrors> {
     };
     errors.sort_by_key(|error| error.span().map(|span| span.start));
     let mut faults = SpecErrors::default();
+    let mut first = None;
     let mut last = None;
     for error in errors {
         let span = error.span().unwrap_or_default();
@@ -206,9 +207,18 @@ fn parse(file: &Source, text: &str) -> Result<Table, SpecErrors> {
         // What follows on the same line is mostly an echo.
         if last.is_none_or(|last| text.as_bytes()[last..at].contains(&b'\n')) {
             let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint: None };
-            faults.push(file.fault(0, &span, finding));
+            let fault = file.fault(0, &span, finding);
+            first.get_or_insert_with(|| fault.clone());
+            faults.push(fault);
             last = Some(at);
         }
+    }
+    // Another kind of file is told once, not line by line.
+    let lines = text.lines().filter(|line| !line.trim().is_empty()).count();
+    if let Some(first) = first.filter(|_| faults.count() > 3 && 2 * faults.count() > lines) {
+        let most = format!("{} of its {lines} lines are no TOML: is this the right file?", faults.count());
+        faults = SpecErrors::default();
+        faults.push(Fault { hint: Some(most), ..first });
     }
     faults.into_result()?;
     Ok(from_toml(parsed.get_ref(), 0))

@@ -58,8 +58,12 @@ impl<'r> Reader<'r> {
             None => None,
             Some(Node { value: Value::Table(table), .. }) => Some(table),
             Some(node) => {
-                let hint = format!("write its keys below a line [{name}]");
-                let message = format!("{name} is {}, but has to be a table", node.shown());
+                // `[[name]]` begins a list, and nobody knows that who wrote it.
+                let list = matches!(node.value, Value::List(_));
+                let (found, how) =
+                    if list { ("a list".to_owned(), " with single brackets") } else { (node.shown(), "") };
+                let hint = format!("write its keys below a line [{name}]{how}, or set one, --set {name}.KEY=VALUE");
+                let message = format!("{name} is {found}, but has to be a table");
                 self.fault(Some(&node.origin), name, message, Some(hint));
                 None
             }

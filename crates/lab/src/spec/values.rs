@@ -11,6 +11,8 @@ use super::tree::{Node, Value};
 
 /// The greatest integer up to which every f64 is exact, 2^53.
 const EXACT: f64 = 9_007_199_254_740_992.0;
+/// Beyond all limits of whole numbers, 2^63.
+const BEYOND: f64 = 9_223_372_036_854_775_808.0;
 
 impl Section<'_> {
     /// A real number.
@@ -27,13 +29,11 @@ impl Section<'_> {
     }
 
     fn checked_number(&self, key: &str, node: &Node, range: &RangeInclusive<f64>, hint: String) -> Option<f64> {
+        let limits = format!("[{}, {}]", show(*range.start()), show(*range.end()));
         match node.number() {
-            None => self.wrong(key, node, "is not a number", Some(hint)),
+            None => self.wrong(key, node, &format!("is not a number in {limits}"), Some(hint)),
             Some(value) if range.contains(&value) => return Some(value),
-            Some(_) => {
-                let limits = format!("is outside [{}, {}]", show(*range.start()), show(*range.end()));
-                self.wrong(key, node, &limits, Some(hint));
-            }
+            Some(_) => self.wrong(key, node, &format!("is outside {limits}"), Some(hint)),
         }
         None
     }
@@ -42,14 +42,12 @@ impl Section<'_> {
     pub(super) fn integer(&mut self, key: &'static str, default: u64, range: RangeInclusive<u64>) -> u64 {
         let Some(node) = self.take(key) else { return default };
         let hint = Some(format!("the default is {default}"));
+        let limits = format!("[{}, {}]", range.start(), range.end());
         match whole(node) {
-            None => self.wrong(key, node, "is not a whole number", hint),
+            None => self.wrong(key, node, &format!("is not a whole number in {limits}"), hint),
             Some(value) => match u64::try_from(value) {
                 Ok(value) if range.contains(&value) => return value,
-                _ => {
-                    let limits = format!("is outside [{}, {}]", range.start(), range.end());
-                    self.wrong(key, node, &limits, hint);
-                }
+                _ => self.wrong(key, node, &format!("is outside {limits}"), hint),
             },
         }
         default
@@ -78,7 +76,8 @@ impl Section<'_> {
                 self.wrong(key, node, &format!("is longer than {most} characters"), None);
             }
             Value::Text(text) if text.chars().any(|c| c.is_control() && c != '\n') => {
-                self.wrong(key, node, "has characters that cannot be printed", None);
+                let hint = "leave them out; lines are parted by \\n".to_owned();
+                self.wrong(key, node, "has characters that cannot be printed", Some(hint));
             }
             Value::Text(text) => return Some(text.clone()),
             _ => self.wrong(key, node, "is not a text", Some("put it into double quotes".into())),
@@ -148,6 +147,7 @@ impl Section<'_> {
                 Ok(value) => value,
                 Err(error) => {
                     let rest = match error {
+                        _ if text.contains(',') => "has a comma, where numbers have a point",
                         UnitError::Number { .. } => "does not begin with a number",
                         UnitError::Unknown { .. } => "has a unit that is not known",
                         UnitError::Dimension { .. } => "has a unit that measures something else",
@@ -254,15 +254,13 @@ impl Section<'_> {
         let hint = || Some(format!("the default is {default:?}"));
         match &node.value {
             Value::List(items) if items.len() <= most => {
+                let limits = format!("[{}, {}]", range.start(), range.end());
                 let mut counts = Vec::with_capacity(items.len());
                 for item in items {
                     match whole(item).map(usize::try_from) {
                         Some(Ok(count)) if range.contains(&count) => counts.push(count),
-                        None => self.wrong(key, item, "is not a whole number", hint()),
-                        Some(_) => {
-                            let limits = format!("is outside [{}, {}]", range.start(), range.end());
-                            self.wrong(key, item, &limits, hint());
-                        }
+                        None => self.wrong(key, item, &format!("is not a whole number in {limits}"), hint()),
+                        Some(_) => self.wrong(key, item, &format!("is outside {limits}"), hint()),
                     }
                 }
                 counts
@@ -290,7 +288,10 @@ fn whole(node: &Node) -> Option<i128> {
         Value::Integer(value) => Some(value.into()),
         // Beyond 64 bits it is outside of any limits; how far does not matter.
         Value::Huge(ref digits) => Some(if digits.starts_with('-') { i128::MIN } else { i128::MAX }),
-        Value::Float(value) if value.fract() == 0.0 && value.abs() <= EXACT => Some(value as i128),
+        // Between the two it may not be the number that was meant.
+        Value::Float(value) if value.fract() == 0.0 && (value.abs() <= EXACT || value.abs() >= BEYOND) => {
+            Some(value as i128)
+        }
         _ => None,
     }
 }

@@ -4,9 +4,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_core::{Executor, Serial, Threads};
+use hwasp_core::{EnvSpec, Environment, Executor, Serial, Step, Stream, Threads};
 use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::metrics::MetricsRow;
 use hwasp_lab::spec::{self, Spec};
@@ -105,5 +106,43 @@ impl Observer for Stopper<'_> {
 
     fn due(&self) -> bool {
         self.inner.due()
+    }
+}
+
+/// Lets `how` change what the environments of an assembly answer to an effort.
+pub(crate) fn spoil(assembly: &mut Assembly, how: impl Fn(&[f64], Step) -> Step + Send + Sync + 'static) {
+    let (how, whole): (Arc<How>, _) = (Arc::new(how), assembly.problem.training.make.clone());
+    assembly.problem.training.make = Arc::new(move |horizon| {
+        Box::new(Spoiled { inner: whole.make(horizon), how: how.clone() }) as Box<dyn Environment>
+    });
+    assembly.problem.deployment = assembly.problem.training.clone();
+}
+
+type How = dyn Fn(&[f64], Step) -> Step + Send + Sync;
+
+struct Spoiled {
+    inner: Box<dyn Environment>,
+    how: Arc<How>,
+}
+
+impl Environment for Spoiled {
+    fn spec(&self) -> &EnvSpec {
+        self.inner.spec()
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.inner.reset(rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.inner.state(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        (self.how)(effort, self.inner.step(effort, command))
     }
 }

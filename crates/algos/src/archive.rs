@@ -194,7 +194,7 @@ impl<'a> Exchange<'a> {
         let within = format!("{}.", self.full(name));
         match &mut self.side {
             Side::Save(all) => {
-                all.extend(archive.iter().map(|(name, array)| (format!("{within}{name}"), array.clone())))
+                all.extend(archive.iter().map(|(name, array)| (format!("{within}{name}"), array.clone())));
             }
             Side::Load(all) => {
                 let parts =

@@ -117,7 +117,7 @@ impl Persist for Learned {
         with.number("wall_s", &mut self.wall_s)?;
         let mut recent: Vec<f64> = self.recent.iter().flat_map(|r| [r.0, r.1]).collect();
         with.series("recent", &mut recent)?;
-        if recent.len() > 2 * TRAILING || recent.len() % 2 != 0 {
+        if recent.len() > 2 * TRAILING || !recent.len().is_multiple_of(2) {
             return Err(with.refuse(
                 "recent",
                 recent.len() as f64,

@@ -132,6 +132,7 @@ fn a_damaged_newest_checkpoint_costs_the_steps_since_the_one_before() {
     let last = bytes.len() - 1;
     bytes[last] ^= 1;
     fs::write(&newest, bytes).unwrap();
+    fs::write(path.join("metrics.csv"), "a curve that someone has edited\n").unwrap();
     let hwasp_lab::Resumed { mut folder, found } =
         RunFolder::resume(&path, &spec, provenance(&spec), always()).unwrap();
     assert_eq!((found.checkpoint.as_ref().unwrap().iteration, found.damaged.len()), (1, 1));
@@ -140,6 +141,8 @@ fn a_damaged_newest_checkpoint_costs_the_steps_since_the_one_before() {
     let trained = train_from(from, &assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
     assert_eq!(told(&trained), told(&run(&assembly, None, 1).0));
     assert!(path.join("checkpoints/iteration-00000002.damaged").is_file());
+    assert!(path.join("metrics.damaged").is_file());
+    assert_eq!(SavedRun::open(&path).unwrap().metrics().unwrap().rows[0].iteration, 1);
 }
 
 #[test]

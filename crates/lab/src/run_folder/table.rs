@@ -20,32 +20,26 @@ pub(super) struct Table {
 
 impl Table {
     /// A table without rows, of which nothing is written yet.
-    pub(super) fn begin(path: PathBuf, totals: &[String]) -> Result<Self, RunError> {
+    fn begin(path: &Path, totals: &[String]) -> Result<Self, RunError> {
         let writer = MetricsWriter::new(Vec::new(), totals);
-        let pending = writer.map_err(|source| RunError::Metrics { path: path.clone(), source })?;
-        Ok(Self { path, header: pending.get_ref().clone(), pending, length: 0 })
+        let pending = writer.map_err(|source| RunError::Metrics { path: path.to_owned(), source })?;
+        Ok(Self { path: path.to_owned(), header: pending.get_ref().clone(), pending, length: 0 })
     }
 
-    /// Cuts a table back to the rows before `iteration`.
-    pub(super) fn resume(
-        path: PathBuf,
-        files: &dyn Files,
-        totals: &[String],
-        iteration: u64,
-    ) -> Result<Self, RunError> {
-        let mut table = Self::begin(path.clone(), totals)?;
-        let error = |source| RunError::Metrics { path: path.clone(), source };
+    /// Cuts a table back to the rows before `iteration`. One that is damaged is set aside: a curve is not worth a training.
+    pub(super) fn resume(path: &Path, files: &dyn Files, totals: &[String], iteration: u64) -> Result<Self, RunError> {
+        let mut table = Self::begin(path, totals)?;
         if iteration > 0 && path.exists() {
-            let file = fs::File::open(&path).map_err(|e| io_error("read", &path, e))?;
-            let kept = MetricsTable::read_before(BufReader::new(file), iteration).map_err(error)?;
-            if kept.design_totals != totals {
-                return Err(error(MetricsError::Another));
-            }
-            for row in &kept.rows {
-                table.push(row)?;
+            match rows_before(path, totals, iteration) {
+                Ok(rows) => rows.iter().try_for_each(|row| table.push(row))?,
+                Err(error) => {
+                    let aside = path.with_extension("damaged");
+                    files.rename(path, &aside).map_err(|e| io_error("rename", path, e))?;
+                    tracing::warn!("{}: {error}; it is set aside, and the learning curve begins anew", path.display());
+                }
             }
         }
-        files::replace(files, &path, table.pending.get_ref()).map_err(|e| io_error("write", &path, e))?;
+        files::replace(files, path, table.pending.get_ref()).map_err(|e| io_error("write", path, e))?;
         table.length = table.pending.get_ref().len() as u64;
         table.pending.get_mut().clear();
         Ok(table)
@@ -80,4 +74,9 @@ impl Table {
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
+}
+
+fn rows_before(path: &Path, totals: &[String], iteration: u64) -> Result<Vec<MetricsRow>, MetricsError> {
+    let kept = MetricsTable::read_before(BufReader::new(fs::File::open(path)?), iteration)?;
+    if kept.design_totals == totals { Ok(kept.rows) } else { Err(MetricsError::Another) }
 }

@@ -283,7 +283,7 @@ impl RunFolder {
     /// Begins the learning curve, or cuts it back to the checkpoint that training goes on from.
     fn begin(&mut self, totals: &[String]) -> Result<(), RunError> {
         let path = self.path.join(METRICS);
-        self.table = Some(Table::resume(path, &*self.keeping.files, totals, self.resumed)?);
+        self.table = Some(Table::resume(&path, &*self.keeping.files, totals, self.resumed)?);
         self.last_checkpoint = Instant::now();
         Ok(())
     }

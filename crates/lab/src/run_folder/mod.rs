@@ -42,7 +42,7 @@ pub enum RunError {
         file: &'static str,
     },
     /// A run that has not come to its end.
-    #[error("{path} has no {file}: the training did not finish")]
+    #[error("{path} has no {file}: the training did not finish, or the file was removed")]
     Unfinished {
         /// The folder.
         path: PathBuf,
@@ -51,7 +51,7 @@ pub enum RunError {
     },
     /// Another program writes to it.
     #[error(
-        "{path} is in use by process {owner}, which trains into it; wait for it, or name another folder with --out"
+        "{path} is in use by process {owner}, which trains into it; wait for it or stop it, or train into another folder"
     )]
     InUse {
         /// The folder.
@@ -158,10 +158,12 @@ const CURVES: &str = "curves.svg";
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.
 pub(crate) const LARGEST_SUMMARY: u64 = 16 << 20;
 
-/// Files and what is wrong with them, line by line.
+/// The first few of some files and what is wrong with them, line by line.
 fn listed(damaged: &[(PathBuf, CheckpointError)]) -> String {
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    damaged.iter().take(3).map(|(path, error)| format!("\n  {}: {error}", name(path))).collect()
+    damaged.iter().take(5).fold(String::new(), |text, (path, error)| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        format!("{text}\n  {name}: {error}")
+    })
 }
 
 pub(crate) fn io_error(action: &'static str, path: &Path, source: io::Error) -> RunError {

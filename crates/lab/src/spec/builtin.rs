@@ -68,9 +68,10 @@ fn unreadable(name: &str, error: &io::Error) -> SpecErrors {
     let path = Path::new(name);
     if path.is_dir() {
         let file = path.join(EXPERIMENT);
-        let hint = match file.is_file() {
-            true => format!("the experiment of this run is {}", shorten(&file.display().to_string(), 120)),
-            false => "name a file, or an experiment of `hwasp list`".into(),
+        let hint = if file.is_file() {
+            format!("the experiment of this run is {}", shorten(&file.display().to_string(), 120))
+        } else {
+            "name a file, or an experiment of `hwasp list`".into()
         };
         return SpecErrors::single(name, "this is a folder, where an experiment is a file".into(), Some(hint));
     }

@@ -162,7 +162,7 @@ fn read_value(s: &Section<'_>, key: &str, node: &Node, group: &GroupSpec, only: 
     if s.reader.sound(&["task.segments", "task.stiffness_total_max", "task.length_total_max", "task.range"]) {
         let (lo, hi) = (show(lo), with_unit(hi, dimension));
         let start = if count == 1 { "it".to_owned() } else { format!("each of the {count}") };
-        let hint = format!("{start} begins there, and the squash has no inverse at its limits");
+        let hint = format!("{start} has to begin between them: the squash has no inverse at its limits");
         s.wrong(key, node, &format!("is not inside ({lo}, {hi})"), Some(hint));
     }
     None
@@ -195,7 +195,8 @@ fn read_placements(s: &mut Section<'_>, groups: &[GroupSpec]) -> Vec<PlacedRange
             }
         }
         Value::List(items) => {
-            let rest = format!("has {} items, but the task has {count} parameters", items.len());
+            let parameters = if count == 1 { "parameter" } else { "parameters" };
+            let rest = format!("has {} items, but the task has {count} {parameters}", items.len());
             s.wrong("placements", node, &rest, Some(example));
         }
         _ => s.wrong("placements", node, "is neither a table nor a list", Some(example)),

@@ -91,7 +91,8 @@ impl Layers {
     pub fn with_option(mut self, typed: String, key: &str, value: &str) -> Self {
         let option = Source::Option(typed);
         if key.len() + value.len() > LONGEST_OPTION {
-            self.refuse(option, format!("an option has at most {LONGEST_OPTION} bytes"), None);
+            let message = format!("it has {} bytes, and an option at most {LONGEST_OPTION}", key.len() + value.len());
+            self.refuse(option, message, Some("write what is so long into an experiment file".into()));
             return self;
         }
         let path = match split_key(key) {
@@ -106,7 +107,8 @@ impl Layers {
         let node = match DeValue::parse(value) {
             Ok(parsed) => Node { origin: origin.clone(), ..Node::from_toml(&parsed, source) },
             Err(error) if value.starts_with(['[', '{', '"', '\'']) => {
-                self.refuse(option, format!("the value is no TOML: {}", error.message()), None);
+                let hint = "texts in it are in double quotes; put the whole option into single ones for the shell";
+                self.refuse(option, format!("the value is no TOML: {}", error.message()), Some(hint.into()));
                 return self;
             }
             Err(_) => Node { origin: origin.clone(), value: Value::Text(value.to_owned()) },
@@ -206,7 +208,13 @@ fn parse(file: &Source, text: &str) -> Result<Table, SpecErrors> {
         let at = span.start.min(text.len());
         // What follows on the same line is mostly an echo.
         if last.is_none_or(|last| text.as_bytes()[last..at].contains(&b'\n')) {
-            let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint: None };
+            let comma = text.as_bytes().get(at) == Some(&b',');
+            let hint = match error.message() {
+                "duplicate key" => Some("it is there already, further up".to_owned()),
+                _ if comma => Some("is it a decimal comma? numbers have a point".to_owned()),
+                _ => None,
+            };
+            let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint };
             let fault = file.fault(0, &span, finding);
             first.get_or_insert_with(|| fault.clone());
             faults.push(fault);

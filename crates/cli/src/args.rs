@@ -329,7 +329,7 @@ pub(crate) struct CompareArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// The training return whose steps are counted [default: nine tenths of the way from the worst to the best]
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = finite)]
     pub(crate) threshold: Option<f64>,
     /// Cells trained at once; they do not change the result [default: the processors there are]
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
@@ -382,6 +382,11 @@ fn whole(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + 
             .filter(|number| limits.contains(number))
             .ok_or_else(|| format!("it has to be a whole number from {} to {}", limits.start(), limits.end()))
     }
+}
+
+/// Reads a number.
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "it has to be a finite number, such as -2.5".into())
 }
 
 /// Reads a time, s.

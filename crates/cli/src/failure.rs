@@ -5,8 +5,15 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use hwasp_lab::RunError;
+use hwasp_lab::checkpoint::CheckpointError;
+use hwasp_lab::compare::CompareError;
 use hwasp_lab::plot::PlotError;
+use hwasp_lab::{PolicyFileError, ReplayError, RunError};
+
+/// The file of a run folder that makes it one.
+const EXPERIMENT: &str = "experiment.toml";
+/// The way out where a picture cannot be written.
+pub(crate) const OTHER_FILE: &str = "name a file in a folder that is there and may be written, with --out";
 
 /// An error, and whether it was there before any work began.
 #[derive(Debug)]
@@ -53,32 +60,88 @@ impl Failure {
             }
             cause = error.source();
         }
-        if let Some(hint) = self.hint.clone().or_else(|| self.error.downcast_ref().and_then(way_out)) {
+        if let Some(hint) = self.hint.clone().or_else(|| way_out(&*self.error)) {
             let _ = write!(text, "\n  = hint: {hint}");
         }
         text
     }
 }
 
-/// What to do about a folder that is not what it should be.
-fn way_out(error: &RunError) -> Option<String> {
-    let again = |folder: &Path| {
-        let experiment = folder.join("experiment.toml");
+/// What to do about a file or a folder that is not what it should be.
+fn way_out(error: &(dyn Error + 'static)) -> Option<String> {
+    if let Some(PlotError::Write { .. }) = error.downcast_ref() {
+        return Some(OTHER_FILE.into());
+    }
+    if let Some(CompareError::Run(error)) = error.downcast_ref() {
+        return of_cell(error);
+    }
+    match error.downcast_ref() {
+        Some(ReplayError::Run(error)) => of_run(error),
+        _ => of_run(error.downcast_ref()?),
+    }
+}
+
+/// The same for a run folder.
+fn of_run(error: &RunError) -> Option<String> {
+    let again = |run: &Path| {
+        let experiment = run.join(EXPERIMENT);
         format!("`hwasp train {} --out FOLDER` repeats the training", experiment.display())
     };
-    match error {
-        RunError::NotARun { .. } => Some("name a folder that `hwasp train` has written".into()),
-        RunError::Unfinished { path, .. } => Some(again(path)),
+    let parent = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
+    Some(match error {
+        RunError::NotARun { .. } => "name a folder that `hwasp train` has written".into(),
+        RunError::Unfinished { path, .. } if !path.join("summary.json").exists() => {
+            format!("`hwasp train --resume {}` goes on with it", path.display())
+        }
+        RunError::Unfinished { path, .. } => again(path),
+        RunError::Finished { path } => {
+            let run = path.display();
+            format!("`hwasp eval {run}` evaluates it; for more steps train anew, with a larger --env-steps")
+        }
+        RunError::Policy { path, source: PolicyFileError::Tensor { .. } } => {
+            let how = "it belongs to another run, or experiment.toml or --set ask for another policy";
+            format!("{how}; {}", again(&parent(path)))
+        }
         RunError::Policy { path, .. } | RunError::Metrics { path, .. } | RunError::Decode { path, .. } => {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            Some(format!("the file was changed or damaged, or belongs to another run; {}", again(folder)))
+            format!("the file was changed or damaged, or belongs to another run; {}", again(&parent(path)))
         }
-        RunError::Io { action: "read", path, .. } => Some(again(path.parent().unwrap_or(Path::new("")))),
+        RunError::Unsound { folder, .. } => again(&parent(folder)),
+        RunError::Checkpoint {
+            source: CheckpointError::Experiment { .. } | CheckpointError::Version { .. }, ..
+        } => {
+            return None;
+        }
+        RunError::Checkpoint { .. } => "the file was changed or damaged; another checkpoint may be sound".into(),
+        RunError::Io { action: "read", path, .. } => match path.ancestors().skip(1).take(2).find(|run| is_run(run)) {
+            Some(run) if !path.ends_with(EXPERIMENT) => {
+                format!("see that it is a file and may be read; {}", again(run))
+            }
+            _ => "see that it is the file that `hwasp train` wrote, and may be read".into(),
+        },
+        RunError::Io { action: "write", .. } => "make room there, or see that it may be written, and try again".into(),
+        RunError::Io { action: "lock", .. } => "see that it is a file and may be written, or remove it".into(),
         RunError::Io { action: "create", .. } | RunError::Plot(PlotError::Write { .. }) => {
-            Some("name another folder with --out".into())
+            "name another folder with --out".into()
         }
-        _ => None,
-    }
+        _ => return None,
+    })
+}
+
+/// The same for a comparison, a cell of which can be trained again.
+fn of_cell(error: &RunError) -> Option<String> {
+    let (RunError::Policy { path, .. }
+    | RunError::Metrics { path, .. }
+    | RunError::Decode { path, .. }
+    | RunError::Io { action: "read", path, .. }) = error
+    else {
+        return of_run(error);
+    };
+    let cell = path.ancestors().find(|folder| is_run(folder))?;
+    Some(format!("remove the folder {}: the same command trains it anew", cell.display()))
+}
+
+fn is_run(folder: &Path) -> bool {
+    folder.join(EXPERIMENT).is_file()
 }
 
 /// What goes wrong on the way: exit status 1.

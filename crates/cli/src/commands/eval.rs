@@ -1,6 +1,6 @@
 //! `hwasp eval`.
 
-use hwasp_lab::{evaluate, evaluate_native};
+use hwasp_lab::{EvaluateError, evaluate, evaluate_native};
 
 use super::{executor, saved_run};
 use crate::args::EvalArgs;
@@ -16,10 +16,14 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
     let executor = executor(args.threads)?;
     let asked = (episodes, seed);
     let evaluation = if args.native_tendons {
-        evaluate_native(saved.assembly(), &params, asked, &*executor)?
+        evaluate_native(saved.assembly(), &params, asked, &*executor)
     } else {
-        evaluate(saved.assembly(), &params, asked, &*executor)?
+        evaluate(saved.assembly(), &params, asked, &*executor)
     };
+    let evaluation = evaluation.map_err(|error| match error {
+        EvaluateError::Assemble(error) => Failure::input(error),
+        error => error.into(),
+    })?;
     if args.per_shape && evaluation.success.is_empty() {
         let task = saved.assembly().spec().task.kind().name();
         output::remark(&format!("note: {task} knows neither success nor shapes"));

@@ -4,7 +4,7 @@ use std::io;
 
 use super::experiment;
 use crate::args::GraphArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
 
 pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
@@ -22,7 +22,9 @@ pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
             return Err(Failure::input(format!("`{}` {text}", path.display())));
         }
     };
-    std::fs::write(path, text)
-        .map_err(|e| io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display())))?;
+    std::fs::write(path, text).map_err(|e| {
+        let error = io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display()));
+        Failure::from(error).hint(OTHER_FILE)
+    })?;
     Ok(output::print(&format!("{}\n", path.display()))?)
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use hwasp_lab::{Assembly, Keeping, Observer, Provenance, Resumed, RunFolder, TensorBoard, TrainError, train_from};
+use hwasp_lab::{
+    Assembly, Keeping, Observer, ObserverError, Provenance, Resumed, RunError, RunFolder, TensorBoard, TrainError,
+    train_from,
+};
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
 use crate::args::TrainArgs;
@@ -72,6 +75,11 @@ fn taken_up(run: &Path, args: &TrainArgs) -> Result<(Assembly, Resumed), Failure
     Ok((assembly, resumed))
 }
 
+/// What could not be written or read of the run folder, where a training ended for that.
+fn unwritten(error: &TrainError) -> Option<&RunError> {
+    if let TrainError::Observer(ObserverError(error)) = error { error.downcast_ref() } else { None }
+}
+
 /// What a training that did not come to its end leaves, and the way on.
 fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
     let run = folder.path().display().to_string();
@@ -82,9 +90,10 @@ fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
     }
     match &error {
         TrainError::Interrupted { .. } => Failure::interrupted(error).hint(&format!("{resume} from there")),
-        _ => match folder.fault() {
-            Some(fault) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", fault.display())),
-            None => error.into(),
+        _ => match (folder.fault(), unwritten(&error)) {
+            (Some(fault), _) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", fault.display())),
+            (None, Some(_)) => Failure::from(error).hint(&format!("with the way free, {resume}")),
+            (None, None) => error.into(),
         },
     }
 }

@@ -86,11 +86,6 @@ fn designs_that_are_none() {
     insta::assert_snapshot!(transcript);
 }
 
-#[test]
-fn a_chart_of_what_has_none() {
-    insta::assert_snapshot!(Sandbox::with_run("design-no-chart").refused(&["design run --out pictures"]));
-}
-
 /// A folder that cannot be written costs the picture only: by then the text is printed.
 #[test]
 fn a_chart_that_cannot_be_written() {

@@ -7,6 +7,8 @@
 
 mod arguments;
 mod designs;
+#[cfg(target_os = "linux")]
+mod errors;
 mod experiments;
 mod folders;
 mod help;

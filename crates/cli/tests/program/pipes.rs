@@ -1,4 +1,4 @@
-//! Readers that go away, disks that are full, names that are no text.
+//! Readers that go away, names that are no text.
 
 use std::io::pipe;
 use std::process::{Command, Stdio};
@@ -27,16 +27,6 @@ fn a_training_that_nobody_watches_comes_to_its_end() {
     let status = command.stdout(broken()).stderr(broken()).status().unwrap();
     assert!(status.success(), "{status}");
     assert!(sandbox.path("run/summary.json").is_file());
-}
-
-#[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_is_told() {
-    let sandbox = Sandbox::new("full-disk");
-    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = sandbox.command("list").stdout(full).stderr(Stdio::piped()).output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    insta::assert_snapshot!(String::from_utf8(output.stderr).unwrap());
 }
 
 #[cfg(unix)]

@@ -118,8 +118,8 @@ fn the_second_signal_ends_the_program_at_once() {
 }
 
 #[test]
-fn a_folder_in_use_and_folders_that_cannot_be_resumed() {
-    let sandbox = Sandbox::with_run("not-resumed");
+fn a_folder_in_use() {
+    let sandbox = Sandbox::new("in-use");
     let mut child = begin(&sandbox, "train reach --env-steps 1e11 --out busy --quiet --checkpoint-every 0");
     wait_for_checkpoints(&sandbox, "busy", 2);
     let output = sandbox.run("train --resume busy");
@@ -127,23 +127,6 @@ fn a_folder_in_use_and_folders_that_cannot_be_resumed() {
     assert!(stderr(&output).contains(&format!("busy is in use by process {}", child.id())), "{output:?}");
     child.kill().unwrap();
     child.wait().unwrap();
-    sandbox.replace("busy/experiment.toml", "clip_ratio = 0.2", "clip_ratio = 0.3");
-    let newest = fs::read_dir(sandbox.path("busy/checkpoints")).unwrap().map(|f| f.unwrap().path()).max().unwrap();
-    fs::rename(newest, sandbox.path("busy/checkpoints/iteration-00099999.safetensors")).unwrap();
-    insta::assert_snapshot!(sandbox.refused(&[
-        "train --resume run",
-        "train --resume busy",
-        "train --resume nowhere",
-        "train --resume run reach",
-        "train --resume run --seed 1",
-        "train",
-        "train reach --checkpoint-every never",
-        "train reach --checkpoint-every -1",
-        "replay run/summary.json",
-        "replay run/policy.safetensors",
-        "replay nowhere.safetensors",
-        "replay run",
-    ]));
 }
 
 #[test]
@@ -182,7 +165,8 @@ fn logs_as_json_and_by_level() {
     assert!(lines.iter().any(|l| l["level"] == "INFO" && l["message"].as_str().unwrap().starts_with("training reach")));
     assert!(lines.iter().any(|l| l["level"] == "DEBUG" && l["message"] == "checkpoint" && l["iteration"] == 1));
     let log = String::from_utf8(sandbox.read("run/train.log")).unwrap();
-    assert_eq!(log.lines().map(line).count(), lines.len());
+    let logged: Vec<_> = log.lines().map(line).collect();
+    assert_eq!(logged.len(), lines.len());
     let output = sandbox.run("train reach --log-format json --resume nowhere");
     let output_json = stderr(&sandbox.run("train --log-format json --resume nowhere"));
     assert_eq!(output.status.code(), Some(2));

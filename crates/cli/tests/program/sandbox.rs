@@ -23,22 +23,36 @@ impl Sandbox {
 
     /// One with a finished run in the folder `run`, without its checkpoints.
     pub(crate) fn with_run(name: &str) -> Self {
+        let sandbox = Self::new(name);
+        sandbox.put_run();
+        sandbox
+    }
+
+    /// Puts a finished run into the folder `run`, without its checkpoints.
+    pub(crate) fn put_run(&self) {
         static RUN: OnceLock<Sandbox> = OnceLock::new();
         let trained = RUN.get_or_init(|| {
             let sandbox = Sandbox::new("trained-once");
             assert!(sandbox.run(&format!("{TINY} --out run")).status.success());
             sandbox
         });
-        let sandbox = Self::new(name);
-        fs::create_dir(sandbox.path("run")).unwrap();
-        for file in fs::read_dir(trained.path("run")).unwrap() {
-            let file = file.unwrap();
-            if file.path().is_dir() {
-                continue;
+        copy_files(&trained.path("run"), &self.path("run"));
+    }
+
+    /// Puts a run into the folder `run` that was stopped after its second iteration: with its checkpoints,
+    /// without what is written last.
+    pub(crate) fn put_stopped_run(&self) {
+        static RUN: OnceLock<Sandbox> = OnceLock::new();
+        let stopped = RUN.get_or_init(|| {
+            let sandbox = Sandbox::new("stopped-once");
+            assert!(sandbox.run(&format!("{TINY} --checkpoint-every 0 --out run")).status.success());
+            for last in ["policy.safetensors", "design.toml", "curves.svg", "summary.json"] {
+                fs::remove_file(sandbox.path("run").join(last)).unwrap();
             }
-            fs::copy(file.path(), sandbox.path("run").join(file.file_name())).unwrap();
-        }
-        sandbox
+            sandbox
+        });
+        copy_files(&stopped.path("run"), &self.path("run"));
+        copy_files(&stopped.path("run/checkpoints"), &self.path("run/checkpoints"));
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
@@ -90,6 +104,14 @@ impl Sandbox {
             let _ = writeln!(text, "{shown}");
         }
         text
+    }
+}
+
+/// Copies the files of a folder, not the folders in it.
+fn copy_files(from: &Path, to: &Path) {
+    fs::create_dir(to).unwrap();
+    for file in fs::read_dir(from).unwrap().map(Result::unwrap).filter(|file| file.path().is_file()) {
+        fs::copy(file.path(), to.join(file.file_name())).unwrap();
     }
 }
 

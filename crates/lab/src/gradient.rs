@@ -71,28 +71,23 @@ impl<'a> Gradient<'a> {
         Ok(self.learned.checkpoint(archive))
     }
 
-    /// One iteration. One that fails leaves the learner as it was, and is told to the observer with all that it takes to
-    /// repeat it.
     fn iterate(&mut self, run: &mut Loop<'_>) -> Result<(), TrainError> {
         let progress = self.progress();
-        let (batch, error) = match self.collect(run.executor) {
-            Ok(batch) => match self.learn(run.executor, &batch, progress) {
-                Ok(update) => {
-                    let spec = self.assembly.spec();
-                    self.learned.env_steps += batch.env_steps();
-                    self.learned.discarded_episodes += batch.faults.len() as u64;
-                    let policy = &self.assembly.policy;
-                    let totals = policy.space().totals(&policy.design(self.learner.params()));
-                    self.learned.tell(mean_returns(&batch, spec.discount()), Some(update), totals, run)?;
-                    return Ok(());
-                }
-                Err(error) => (Some(batch), error),
-            },
-            Err(error) => (None, error),
-        };
-        let checkpoint = self.checkpoint()?;
-        let what = error.to_string();
-        run.observer.on(Event::Failed(&Fault { checkpoint: &checkpoint, batch: batch.as_ref(), what: &what }))?;
+        let batch = self.collect(run.executor).or_else(|error| self.fail(None, error, run))?;
+        let update = self.learn(run.executor, &batch, progress);
+        let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
+        self.learned.env_steps += batch.env_steps();
+        self.learned.discarded_episodes += batch.faults.len() as u64;
+        let policy = &self.assembly.policy;
+        let totals = policy.space().totals(&policy.design(self.learner.params()));
+        let returns = mean_returns(&batch, self.assembly.spec().discount());
+        Ok(self.learned.tell(returns, Some(update), totals, run)?)
+    }
+
+    /// Tells the observer of an iteration that failed, with all that it takes to repeat it: the learner is as it was.
+    fn fail<T>(&mut self, batch: Option<&Batch>, error: TrainError, run: &mut Loop<'_>) -> Result<T, TrainError> {
+        let (checkpoint, what) = (self.checkpoint()?, error.to_string());
+        run.observer.on(Event::Failed(&Fault { checkpoint: &checkpoint, batch, what: &what }))?;
         Err(error)
     }
 

@@ -113,14 +113,15 @@ impl CheckpointStore {
         Ok(())
     }
 
-    /// Looks for the newest sound one.
+    /// Looks for the newest sound one; where none of the last three is, for the best.
     ///
     /// # Errors
     /// [`RunError::Checkpoint`] where the newest one belongs to another experiment or to a newer program: that is nothing
     /// that an older one could mend. [`RunError::Unsound`] where there are some, but none is sound.
     pub fn newest(&self) -> Result<Found, RunError> {
         let mut found = Found::default();
-        for (_, path) in numbered(&self.folder)?.into_iter().rev() {
+        let numbered = numbered(&self.folder)?.into_iter().rev().map(|(_, path)| path);
+        for path in numbered.chain(Some(self.folder.join(BEST)).filter(|best| best.exists())) {
             let bytes = read_limited(&path, LARGEST_CHECKPOINT)?;
             match Checkpoint::decode(&bytes, &self.experiment) {
                 Ok(checkpoint) => {

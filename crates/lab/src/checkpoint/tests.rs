@@ -111,6 +111,10 @@ fn the_last_three_and_the_best_are_kept() {
     for name in three {
         let _ = std::fs::write(run.join("checkpoints").join(name), "nothing");
     }
+    // The best one is as good as any.
+    let found = again.newest().unwrap();
+    assert_eq!((found.checkpoint.unwrap().iteration, found.damaged.len()), (2, 3));
+    std::fs::write(run.join("checkpoints/best.safetensors"), "nothing").unwrap();
     assert!(again.newest().is_err(), "all are damaged");
     again.remove_all().unwrap();
     assert_eq!(names(&run), ["iteration-00000101.damaged"]);

@@ -4,6 +4,10 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+/// The most that a state may have counted: ten times the steps of the longest training, and so little that sums of counters
+/// do not overflow.
+const MOST_COUNTED: u64 = 1 << 44;
+
 /// An array of one kind of number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Array {
@@ -95,14 +99,17 @@ pub trait Element: Copy {
     fn wrap(values: Vec<Self>) -> Array;
     /// The array, if it is of this kind.
     fn unwrap(array: &Array) -> Option<&[Self]>;
+    /// What numbers of this kind have to be in a state.
+    const LIMITS: &'static str;
     /// The element, where it is no number that a state may have.
     fn unsound(self) -> Option<f64>;
 }
 
 macro_rules! element {
-    ($type:ty, $variant:ident, $kind:literal, $unsound:expr) => {
+    ($type:ty, $variant:ident, $kind:literal, $limits:literal, $unsound:expr) => {
         impl Element for $type {
             const KIND: &'static str = $kind;
+            const LIMITS: &'static str = $limits;
 
             fn wrap(values: Vec<Self>) -> Array {
                 Array::$variant(values)
@@ -120,9 +127,9 @@ macro_rules! element {
     };
 }
 
-element!(f32, F32, "f32", |v| (!v.is_finite()).then_some(f64::from(v)));
-element!(f64, F64, "f64", |v| (!v.is_finite()).then_some(v));
-element!(u64, U64, "u64", |_| None);
+element!(f32, F32, "f32", "finite", |v| (!v.is_finite()).then_some(f64::from(v)));
+element!(f64, F64, "f64", "finite", |v| (!v.is_finite()).then_some(v));
+element!(u64, U64, "u64", "at most 2^44", |v| (v > MOST_COUNTED).then_some(v as f64));
 
 impl<'a> Exchange<'a> {
     /// From states into `archive`.
@@ -150,7 +157,7 @@ impl<'a> Exchange<'a> {
         done
     }
 
-    /// A vector whose length follows from the settings; its elements are finite.
+    /// A vector whose length follows from the settings; its elements are finite, and counters below 2^44.
     pub fn vector<E: Element>(&mut self, name: &str, values: &mut Vec<E>) -> Result<(), StateError> {
         let wanted = values.len();
         self.series(name, values)?;
@@ -170,7 +177,7 @@ impl<'a> Exchange<'a> {
             values.extend_from_slice(found);
         }
         if let Some(value) = values.iter().find_map(|v| v.unsound()) {
-            return Err(StateError::Value { name, value, limits: "finite" });
+            return Err(StateError::Value { name, value, limits: E::LIMITS });
         }
         if let Side::Save(archive) = &mut self.side {
             archive.insert(name, E::wrap(values.clone()));
@@ -250,7 +257,7 @@ mod tests {
     fn outer() -> Outer {
         Outer {
             first: Inner { weights: vec![0.1, -0.0], steps: 3 },
-            second: Inner { weights: vec![f32::MIN_POSITIVE], steps: u64::MAX },
+            second: Inner { weights: vec![f32::MIN_POSITIVE], steps: MOST_COUNTED },
             scores: vec![1e-300, 2.0],
         }
     }
@@ -296,6 +303,10 @@ mod tests {
         assert_eq!(
             told(|archive| drop(archive.insert("scores".into(), Array::F64(vec![1.0, f64::NAN])))),
             "`scores` of the saved state is NaN, which is not finite"
+        );
+        assert_eq!(
+            told(|archive| drop(archive.insert("first.steps".into(), Array::U64(vec![u64::MAX])))),
+            "`first.steps` of the saved state is 18446744073709552000, which is not at most 2^44"
         );
         let broken = Outer { scores: vec![f64::INFINITY], ..outer() }.save();
         assert_eq!(broken.unwrap_err().to_string(), "`scores` of the saved state is inf, which is not finite");

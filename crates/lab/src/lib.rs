@@ -26,6 +26,7 @@ pub mod spec;
 pub mod stats;
 mod summary;
 mod tensorboard;
+mod tensors;
 mod train;
 
 pub use assemble::{AssembleError, Assembly, LearnerSettings, Problems, World};

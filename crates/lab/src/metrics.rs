@@ -212,7 +212,9 @@ fn read_row(text: &str, totals: &[String]) -> Result<MetricsRow, MetricsError> {
     let (iteration, env_steps) = (count()?, count()?);
     let mut real = || {
         let field = fields.next().unwrap_or_default();
-        field.1.trim().parse::<f64>().map_err(|_| wrong(field, "a number"))
+        let value = field.1.trim().parse::<f64>().map_err(|_| wrong(field, "a number"));
+        // `-NaN` can be read, but is never written: of what is not known there is but one kind.
+        value.map(|value| if value.is_nan() { f64::NAN } else { value })
     };
     Ok(MetricsRow {
         iteration,

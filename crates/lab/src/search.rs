@@ -75,7 +75,7 @@ impl<'a> Problem<'a> {
         let spec = self.assembly.spec();
         let filters = spec.method == Method::Ars && spec.ars.variant.filters();
         let filter = filters.then(|| StateFilter::new(self.assembly.policy.obs_dim()));
-        Ok(State::new(self.searcher()?, filter, from)?)
+        Ok(State::new(self.searcher()?, filter, self.start.len(), from)?)
     }
 
     fn searcher(&self) -> Result<Box<dyn Search>, SearchError> {

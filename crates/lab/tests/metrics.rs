@@ -34,6 +34,13 @@ fn read(text: impl AsRef<[u8]>) -> Result<MetricsTable, MetricsError> {
     MetricsTable::read(text.as_ref())
 }
 
+/// `-NaN` was read with its sign, which is not written.
+#[test]
+fn there_is_but_one_kind_of_unknown() {
+    let table = read(header() + "0,1,-NaN,nan,+NaN,NaN,-nan,0,1\n").unwrap();
+    assert!(bits(&table.rows[0])[..5].iter().all(|&b| b == f64::NAN.to_bits()));
+}
+
 /// The message for a body under a good header.
 fn message(body: &str) -> String {
     read(header() + body).unwrap_err().to_string()

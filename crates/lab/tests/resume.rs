@@ -8,6 +8,7 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
+use hwasp_algos::Array;
 use hwasp_core::{End, EpisodeKind, Episodes, Sampler, Serial, Step};
 use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::{
@@ -37,6 +38,33 @@ fn a_resumed_training_has_the_bits_of_one_that_was_never_interrupted() {
             let rest = &kept.rows[from.iteration as usize..];
             assert_eq!(format!("{:?}", rows.rows), format!("{rest:?}"), "{method} {settings:?}, checkpoint {i}");
         }
+    }
+}
+
+/// Numbers that are sound one by one, and make no state: parameters of another policy were handed out, and differences and
+/// sums of counters overflowed.
+#[test]
+fn a_state_that_cannot_be_is_refused() {
+    let assembly = Assembly::new(&small("cmaes", &[])).unwrap();
+    let (_, kept) = run(&assembly, None, 1);
+    let last = kept.checkpoints.last().unwrap();
+    assert_eq!(assembly.params_at(last).unwrap().len(), assembly.init().len());
+    let told = |name: &str, array| {
+        let mut checkpoint = last.clone();
+        checkpoint.archive.insert(name.to_owned(), array).unwrap();
+        assembly.params_at(&checkpoint).unwrap_err().to_string()
+    };
+    let count = assembly.init().len();
+    assert_eq!(
+        told("best.params", Array::F32(vec![0.5])),
+        format!("`best.params` of the saved state has 1 elements instead of {count}")
+    );
+    assert_eq!(
+        told("search.decomposed_at", Array::U64(vec![1 << 40])),
+        "`search.decomposed_at` of the saved state is 1099511627776, which is not a generation of this run so far"
+    );
+    for name in ["loop.env_steps", "loop.failed_candidates", "search.run_generation"] {
+        assert!(told(name, Array::U64(vec![u64::MAX])).ends_with("which is not at most 2^44"), "{name}");
     }
 }
 
@@ -255,7 +283,7 @@ fn physics_that_fail_again_and_again_end_the_training_with_a_reason() {
     let mut assembly = Assembly::new(&small("hwasp", &[])).unwrap();
     let steps = AtomicU64::new(0);
     spoil(&mut assembly, move |_, step| {
-        let spoiled = steps.fetch_add(1, Ordering::Relaxed) % 20 == 0;
+        let spoiled = steps.fetch_add(1, Ordering::Relaxed).is_multiple_of(20);
         if spoiled { Step { end: Some(End::Faulted), ..step } } else { step }
     });
     let mut keeper = Keeper::default();

@@ -117,6 +117,11 @@ fn a_hostile_megabyte_is_answered_at_once() {
         "é".repeat(megabyte / 2),
     ];
     texts.push((0..60_000).fold(String::new(), |text, i| text + "key" + &i.to_string() + " = 1\n"));
+    // Each fault is shown with its line, and to find that line took as long as the file is: half a minute in all.
+    texts.push((0..40_000).fold(String::new(), |text, i| text + "[methods.m" + &i.to_string() + "]\n"));
+    texts.push("=\n".repeat((1 << 15) - 8));
+    let unknown = |method: &str| (0..8000).fold(format!("[methods.{method}.ppo]\n"), |t, i| t + &format!("x{i} = 1\n"));
+    texts.push(["hwasp", "minimal", "fixed", "cmaes", "ars", "ars-rl"].map(unknown).concat());
     for text in texts {
         assert!(text.len() <= megabyte);
         let error = match Layers::from_text("huge.toml", &text) {

@@ -218,7 +218,7 @@ impl Persist for MlpBaseline {
         self.moments = match moments[..] {
             [] => None,
             [mean, square] => Some((mean, square)),
-            _ => return Err(with.refuse("moments", moments[2], "one of two moments")),
+            _ => return Err(with.refuse("moments", moments.len() as f64, "a list of 0 or 2 numbers")),
         };
         let mut scaling: Vec<f32> = self.scaling.iter().flat_map(|&(centre, scale)| [centre, scale]).collect();
         with.vector("scaling", &mut scaling)?;
@@ -230,6 +230,7 @@ impl Persist for MlpBaseline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::archive::Array;
     use hwasp_core::{End, Episode};
 
     fn batch(rows: usize) -> (Batch, Vec<f32>) {
@@ -255,6 +256,18 @@ mod tests {
         let worst = values.iter().zip(&targets).map(|(v, t)| (v - t).abs()).fold(0.0, f32::max);
         assert!(worst < 4.0, "{worst} off a range of 80");
         assert!((last[0] + 280.0).abs() < 4.0, "{}", last[0]);
+    }
+
+    /// The message named the third moment of a state that has one or three.
+    #[test]
+    fn moments_that_are_no_pair_are_refused() {
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 0, 5);
+        let mut archive = baseline.save().unwrap();
+        for count in [1, 3] {
+            archive.insert("moments".into(), Array::F64(vec![0.5; count]));
+            let told = baseline.load(&archive).unwrap_err().to_string();
+            assert_eq!(told, format!("`moments` of the saved state is {count}, which is not a list of 0 or 2 numbers"));
+        }
     }
 
     #[test]

@@ -17,6 +17,8 @@ use safetensors::{SafeTensors, serialize};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::tensors::check_ends;
+
 pub(crate) use batch::{has_batch, has_this_batch};
 pub use error::CheckpointError;
 pub use store::{CheckpointStore, Found};
@@ -167,6 +169,7 @@ impl Checkpoint {
 impl Header {
     /// Of a file, whatever wrote it.
     pub fn read(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        check_ends(bytes)?;
         let (_, metadata) = SafeTensors::read_metadata(bytes)?;
         let text = metadata.metadata().as_ref().and_then(|about| about.get(KEY)).ok_or(CheckpointError::NotOne)?;
         serde_json::from_str(text).map_err(|e| CheckpointError::Header(e.to_string()))

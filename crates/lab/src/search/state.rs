@@ -53,17 +53,32 @@ pub(super) struct Scored {
 }
 
 impl State {
-    /// From the beginning, or from where a search was interrupted.
+    /// From the beginning, or from where a search was interrupted; a policy has so many parameters.
     pub(super) fn new(
         search: Box<dyn Search>,
         filter: Option<StateFilter>,
+        parameters: usize,
         from: Option<&Archive>,
     ) -> Result<Self, StateError> {
         let mut state = Self { search, filter, best: None, learned: Learned::default(), slots: Vec::new() };
         if let Some(archive) = from {
             state.load(archive)?;
+            state.check_params(parameters)?;
         }
         Ok(state)
+    }
+
+    /// Parameters that act are exchanged as they are: candidates that nobody has scored have none.
+    fn check_params(&self, wanted: usize) -> Result<(), StateError> {
+        let best = self.best.iter().map(|(_, params)| ("best.params".to_owned(), params.len()));
+        let scored = self.slots.iter().enumerate().filter_map(|(i, slot)| match slot {
+            Slot::Scored(scored) => Some((format!("candidate.{i}.scored.params"), scored.params.len())),
+            _ => None,
+        });
+        match best.chain(scored).find(|(_, found)| *found != wanted) {
+            Some((name, found)) => Err(StateError::Length { name, found, wanted }),
+            None => Ok(()),
+        }
     }
 
     pub(super) fn checkpoint(&mut self, clock: Clock) -> Result<Checkpoint, StateError> {

@@ -99,6 +99,11 @@ impl SpecErrors {
         }
     }
 
+    /// The same, where to make the fault costs something: those beyond the kept ones are not made.
+    pub(super) fn push_with(&mut self, fault: impl FnOnce() -> Fault) {
+        if self.is_full() { self.count_one() } else { self.push(fault()) }
+    }
+
     /// Counts a fault that there is no room for.
     pub(super) fn count_one(&mut self) {
         self.dropped += 1;

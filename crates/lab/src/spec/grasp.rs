@@ -12,6 +12,9 @@ use super::section::Section;
 use super::tree::Value;
 use super::values::with_unit;
 
+/// The most shapes of a list, in which one may stand several times.
+const MOST_SHAPES: usize = 100;
+
 named! {
     /// The limits within which the hand's twelve parameters are searched.
     pub enum HandRangeKind {
@@ -72,7 +75,7 @@ pub struct SpanSpec {
 /// |---|---|---|---|
 /// | `range` | "large" | limits of the twelve parameters: `large` or `small` | |
 /// | `tension_limit` | "75 N" | the most the three tendons pull together; 163 N is the easy variant | 1 to 1000 N |
-/// | `shapes` | all four | of `sphere`, `box`, `cylinder`, `ellipsoid` | at least one |
+/// | `shapes` | all four | of `sphere`, `box`, `cylinder`, `ellipsoid` | 1 to 100 of them |
 /// | `size` | 40 to 100 mm | edges of the object's bounding box | 10 to 200 mm |
 /// | `mass` | 100 to 500 g | of the object | 0.001 to 10 kg |
 /// | `safety_factor` | 1.0 | objects are heavier by it in training than those of evaluations | 1 to 10 |
@@ -223,6 +226,16 @@ fn read_shapes(s: &mut Section<'_>) -> Vec<ObjectKind> {
         s.wrong("shapes", node, "is not a list", Some("write it like [\"sphere\", \"box\"]".into()));
         return all();
     };
+    if items.len() > MOST_SHAPES {
+        let hint = "a shape that stands there twice is drawn twice as often".to_owned();
+        s.wrong(
+            "shapes",
+            node,
+            &format!("has {} items, but at most {MOST_SHAPES} are possible", items.len()),
+            Some(hint),
+        );
+        return all();
+    }
     let shapes: Vec<ObjectKind> = items
         .iter()
         .enumerate()

@@ -164,14 +164,14 @@ impl Layers {
         table
     }
 
-    /// Faults of the layers themselves: options that say nothing, tables for methods that do not exist.
-    pub(super) fn faults(&self) -> Vec<Fault> {
-        let mut faults = self.faults.clone();
+    /// Tells faults of the layers themselves: options that say nothing, tables for methods that do not exist.
+    pub(super) fn tell(&self, errors: &mut SpecErrors) {
+        self.faults.iter().for_each(|fault| errors.push(fault.clone()));
         for (name, key, node) in &self.overlays {
             let path = format!("methods.{}", shorten(name, 60));
             let mut add = |origin: &Origin, message: String, hint: String| {
                 let finding = Finding { key: path.clone(), message, hint: Some(hint) };
-                faults.push(self.sources[origin.source].fault(origin.source, &origin.span, finding));
+                errors.push_with(|| self.sources[origin.source].fault(origin.source, &origin.span, finding));
             };
             let methods = || super::Method::ALL.iter().map(|(name, _)| *name);
             if super::Method::from_name(name).is_none() {
@@ -185,7 +185,6 @@ impl Layers {
                 add(&node.origin, format!("{path} is {}, but has to be a table", node.shown()), hint);
             }
         }
-        faults
     }
 }
 
@@ -215,9 +214,11 @@ fn parse(file: &Source, text: &str) -> Result<Table, SpecErrors> {
                 _ => None,
             };
             let finding = Finding { key: String::new(), message: format!("no TOML: {}", error.message()), hint };
-            let fault = file.fault(0, &span, finding);
-            first.get_or_insert_with(|| fault.clone());
-            faults.push(fault);
+            faults.push_with(|| {
+                let fault = file.fault(0, &span, finding);
+                first.get_or_insert_with(|| fault.clone());
+                fault
+            });
             last = Some(at);
         }
     }

@@ -160,26 +160,25 @@ pub fn resolve(layers: Layers, method: Option<&str>) -> Result<Spec, SpecErrors>
     };
     // A method that is none is a fault of its key; the rest is checked as if it were the default.
     let method = named.unwrap_or(Method::Hwasp);
-    let (spec, mut errors) = read(&layers, &layers.overridden(method.name()), method);
+    let (spec, mut errors) = read(Reader::new(&layers.sources), &layers.overridden(method.name()), method);
     for (name, source) in layers.overlaid() {
+        if errors.is_full() {
+            break; // nobody reads the rest, and to look for it takes time
+        }
         if let Some(other) = Method::from_name(name).filter(|&other| other != method) {
             // The command line speaks of the chosen method only.
-            let (_, found) = read(&layers, &layers.merged(name), other);
-            let theirs = found.faults().iter().filter(|fault| fault.source == Some(source));
-            theirs.for_each(|fault| errors.push(fault.clone()));
+            let (_, found) = read(Reader::of(&layers.sources, source), &layers.merged(name), other);
+            found.faults().iter().for_each(|fault| errors.push(fault.clone()));
         }
     }
-    for fault in layers.faults() {
-        errors.push(fault);
-    }
+    layers.tell(&mut errors);
     errors.into_result()?;
     // Without faults there is a spec: only a missing or unknown problem leaves none.
     spec.ok_or_else(|| SpecErrors::single("experiment", "it cannot be resolved".into(), None))
 }
 
 /// Reads merged tables.
-fn read(layers: &Layers, table: &Table, method: Method) -> (Option<Spec>, SpecErrors) {
-    let reader = Reader::new(&layers.sources);
+fn read(reader: Reader<'_>, table: &Table, method: Method) -> (Option<Spec>, SpecErrors) {
     let spec = read_spec(&reader, table, method);
     (spec, reader.into_errors())
 }

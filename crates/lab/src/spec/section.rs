@@ -10,6 +10,8 @@ use super::tree::{Node, Table, Value};
 /// What all sections of one experiment share: where values come from, and the faults found so far.
 pub(super) struct Reader<'r> {
     sources: &'r [Source],
+    /// The one source whose faults are told; all if none is named.
+    only: Option<usize>,
     errors: RefCell<SpecErrors>,
     /// Keys whose value became the default because it was wrong.
     unsound: RefCell<Vec<String>>,
@@ -23,6 +25,7 @@ impl<'r> Reader<'r> {
     pub(super) fn new(sources: &'r [Source]) -> Self {
         Self {
             sources,
+            only: None,
             errors: RefCell::default(),
             unsound: RefCell::default(),
             known: RefCell::default(),
@@ -30,8 +33,21 @@ impl<'r> Reader<'r> {
         }
     }
 
+    /// The same for the faults of one source: those of the others have been told.
+    pub(super) fn of(sources: &'r [Source], source: usize) -> Self {
+        Self { only: Some(source), ..Self::new(sources) }
+    }
+
+    /// Whether faults that stand here are told.
+    fn tells(&self, origin: Option<&Origin>) -> bool {
+        self.only.is_none_or(|only| origin.is_some_and(|origin| origin.source == only))
+    }
+
     /// Notes a fault; without an origin it is about what the file does not say.
     pub(super) fn fault(&self, origin: Option<&Origin>, key: &str, message: String, hint: Option<String>) {
+        if !self.tells(origin) {
+            return;
+        }
         let mut errors = self.errors.borrow_mut();
         if errors.is_full() {
             return errors.count_one();
@@ -73,7 +89,7 @@ impl<'r> Reader<'r> {
 
     /// All faults, those of unknown keys included.
     pub(super) fn into_errors(self) -> SpecErrors {
-        for (path, key, origin) in self.unknown.borrow().iter() {
+        for (path, key, origin) in self.unknown.borrow().iter().filter(|(_, _, origin)| self.tells(Some(origin))) {
             if self.errors.borrow().is_full() {
                 self.errors.borrow_mut().count_one();
                 continue;

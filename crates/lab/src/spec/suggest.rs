@@ -10,10 +10,14 @@ pub(super) fn nearest<'c>(typed: &str, candidates: impl IntoIterator<Item = &'c 
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let typed = plain(typed);
+    let slips = |candidate: &str| 1 + candidate.chars().count() / 4;
+    let length = typed.chars().count();
     candidates
         .into_iter()
+        // Lengths alone tell most strangers apart, and cost less than the distance does.
+        .filter(|candidate| length.abs_diff(candidate.chars().count()) <= slips(candidate))
         .map(|candidate| (strsim::damerau_levenshtein(&typed, &plain(candidate)), candidate))
-        .filter(|&(distance, candidate)| distance <= 1 + candidate.chars().count() / 4)
+        .filter(|&(distance, candidate)| distance <= slips(candidate))
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
 }

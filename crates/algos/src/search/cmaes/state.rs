@@ -118,6 +118,9 @@ impl Persist for CmaesState {
         with.vector("axes", &mut self.axes)?;
         with.vector("lengths", &mut self.lengths)?;
         with.number("decomposed_at", &mut self.decomposed_at)?;
+        if self.decomposed_at > self.run_generation {
+            return Err(with.refuse("decomposed_at", self.decomposed_at as f64, "a generation of this run so far"));
+        }
         with.series("best_scores", &mut self.best_scores)?;
         self.median_scores.resize(self.best_scores.len(), 0.0);
         with.vector("median_scores", &mut self.median_scores)?;

@@ -1,0 +1,41 @@
+//! Safetensors of strangers.
+
+use safetensors::SafeTensorError;
+use safetensors::tensor::Metadata;
+
+/// The longest header that the format allows, bytes.
+const LONGEST_HEADER: usize = 100_000_000;
+
+/// Refuses a file whose tensors claim to reach far beyond its end: the format's own reader adds to where they end before it
+/// looks, and the sum overflows. Whatever else is wrong it finds itself.
+pub(crate) fn check_ends(bytes: &[u8]) -> Result<(), SafeTensorError> {
+    let header = bytes.split_first_chunk().and_then(|(length, rest)| {
+        let length = usize::try_from(u64::from_le_bytes(*length)).ok().filter(|&length| length <= LONGEST_HEADER)?;
+        rest.get(..length)
+    });
+    match header.map(serde_json::from_slice::<Metadata>) {
+        Some(Ok(header)) if header.data_len() > bytes.len() => Err(SafeTensorError::MetadataIncompleteBuffer),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eight tensors of 2^61 - 8 bytes, the most whose bits can be counted, end at 2^64 - 64; to that the reader adds the
+    /// length of the header.
+    #[test]
+    fn ends_that_overflow_are_refused() {
+        let (elements, mut end) = ((1_u64 << 58) - 1, 0);
+        let tensors = (0..8).map(|i| {
+            let begin = end;
+            end += 8 * elements;
+            format!(r#""{i}":{{"dtype":"F64","shape":[{elements}],"data_offsets":[{begin},{end}]}}"#)
+        });
+        let header = format!("{{{}}}", tensors.collect::<Vec<_>>().join(","));
+        let file = [&(header.len() as u64).to_le_bytes()[..], header.as_bytes()].concat();
+        assert_eq!(end, u64::MAX - 63);
+        assert!(matches!(check_ends(&file), Err(SafeTensorError::MetadataIncompleteBuffer)));
+    }
+}

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use hwasp_algos::{Learner, Ppo, Trpo};
 use hwasp_core::{
-    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, PolicySpec, Purpose,
-    Spread, stream,
+    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Policy, PolicySpec,
+    Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::MassSpringError;
@@ -19,6 +19,9 @@ use thiserror::Error;
 pub use self::learner::LearnerSettings;
 use self::problem::{initial, problem};
 use crate::spec::{ActivationKind, Method, Place, Spec};
+
+/// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
+const MOST_CORRELATED: usize = 5000;
 
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
@@ -74,6 +77,15 @@ pub enum AssembleError {
         /// Steps of a candidate.
         each: u64,
     },
+    /// A covariance that would not fit.
+    #[error(
+        "method cmaes with a full covariance over {parameters} parameters is too large, {MOST_CORRELATED} are possible; set \
+         cmaes.separable = true, or take a smaller controller"
+    )]
+    Covariance {
+        /// Parameters of the policy.
+        parameters: usize,
+    },
     /// A search over a design that is all fixed.
     #[error("method {method} searches the design, but all of it is fixed; let design.placement be \"action\"")]
     NothingToSearch {
@@ -122,6 +134,10 @@ impl Assembly {
             HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
         let assembly =
             Self { problem, policy: Arc::new(policy), learner: LearnerSettings::new(spec), spec: spec.clone() };
+        let parameters = assembly.policy.param_count();
+        if spec.method == Method::Cmaes && !spec.cmaes.separable && parameters > MOST_CORRELATED {
+            return Err(AssembleError::Covariance { parameters });
+        }
         assembly.check_budget()?;
         Ok(assembly)
     }

@@ -7,7 +7,7 @@ use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
 use thiserror::Error;
 
-use crate::tensors::check_ends;
+use crate::tensors::check_header;
 
 /// The largest file that is read, in bytes: the largest controller there can be, and some.
 pub(crate) const LARGEST_POLICY: u64 = 2 << 30;
@@ -75,7 +75,7 @@ pub fn write_policy(policy: &HardwarePolicy, params: &[f32]) -> Result<Vec<u8>, 
 
 /// Reads the parameters of `policy` back. Bytes are taken for hostile: names, shapes, types and values are checked.
 pub fn read_policy(policy: &HardwarePolicy, bytes: &[u8]) -> Result<Vec<f32>, PolicyFileError> {
-    check_ends(bytes)?;
+    check_header(bytes)?;
     let file = SafeTensors::deserialize(bytes)?;
     let mut params = Vec::with_capacity(policy.param_count());
     for (name, shape) in tensors(policy) {

@@ -21,7 +21,7 @@ fn trained_hands_grasp() {
             let evaluate = if native { evaluate_native } else { evaluate };
             let success = evaluate(saved.assembly(), &params, (24, 3), &executor).unwrap().success;
             let (rate, promised) = (success[0].rate(), summary.evaluation.success[0].rate());
-            let least = if entry.file_name() == "z-grasp" { 0.95 } else { 0.4 };
+            let least = if entry.file_name() == "z-grasp" { 0.95 } else { 0.6 };
             // 24 episodes have a standard error of up to a tenth.
             assert!(promised > least && rate > promised - 0.25, "{}: {rate} of {promised}", entry.path().display());
         }

@@ -151,3 +151,14 @@ fn failing_candidates_rank_last_and_are_charged() {
         assert_eq!(faults.load(Ordering::Relaxed), 0, "{method} gives a candidate that fails");
     }
 }
+
+/// A square of so many parameters would take all memory there is.
+#[test]
+fn a_covariance_that_would_not_fit_is_refused() {
+    let wide = [("controller.hidden", "[100, 100]"), ("train.env_steps", "1000000")];
+    let error = assembly("cmaes", &wide).err().unwrap();
+    assert!(matches!(error, AssembleError::Covariance { parameters } if parameters > 10_000), "{error}");
+    assert!(error.to_string().contains("set cmaes.separable = true"), "{error}");
+    assert!(assembly("cmaes", &[wide[0], wide[1], ("cmaes.separable", "true")]).is_ok());
+    assert!(assembly("cmaes-rl", &[wide[0], wide[1], ("cmaes.popsize", "4")]).is_ok());
+}

@@ -17,7 +17,7 @@ use safetensors::{SafeTensors, serialize};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::tensors::check_ends;
+use crate::tensors::check_header;
 
 pub(crate) use batch::{has_batch, has_this_batch};
 pub use error::CheckpointError;
@@ -169,7 +169,7 @@ impl Checkpoint {
 impl Header {
     /// Of a file, whatever wrote it.
     pub fn read(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        check_ends(bytes)?;
+        check_header(bytes)?;
         let (_, metadata) = SafeTensors::read_metadata(bytes)?;
         let text = metadata.metadata().as_ref().and_then(|about| about.get(KEY)).ok_or(CheckpointError::NotOne)?;
         serde_json::from_str(text).map_err(|e| CheckpointError::Header(e.to_string()))

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use hwasp_lab::export::{self, Kind};
 use hwasp_lab::play;
 use hwasp_lab::plot::XAxis;
 use hwasp_lab::spec::Method;
@@ -74,6 +75,8 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
     Design(DesignArgs),
+    /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON
+    Export(ExportArgs),
     /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
     Replay(ReplayArgs),
     /// Draw grasps of a run: held-out episodes as films, and on one sheet (in builds with the feature `renderer`)
@@ -234,6 +237,48 @@ pub(crate) struct DesignArgs {
     /// Print JSON, for scripts; the chart is then drawn only where --out says
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ExportArgs {
+    /// A run folder, as `hwasp train` writes one
+    pub(crate) run: PathBuf,
+    /// The folder; files of an earlier export of the same run are replaced [default: export/ in the run folder]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) kinds: KindArgs,
+    /// Also write random observations with this program's answers, to hold another runtime against: samples.safetensors
+    #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=export::MOST_SAMPLES))]
+    pub(crate) samples: Option<u64>,
+}
+
+/// What is exported.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Kinds [default: all of them]")]
+pub(crate) struct KindArgs {
+    /// controller.onnx, and policy.onnx: the controller with the law of the hardware as built
+    #[arg(long)]
+    onnx: bool,
+    /// controller.safetensors: weights and scaling
+    #[arg(long)]
+    safetensors: bool,
+    /// controller.json: the same as text
+    #[arg(long)]
+    json: bool,
+}
+
+impl KindArgs {
+    /// What is asked for, or everything.
+    pub(crate) fn kinds(&self) -> Vec<Kind> {
+        let asked = |kind: &Kind| match kind {
+            Kind::Onnx => self.onnx,
+            Kind::Safetensors => self.safetensors,
+            Kind::Json => self.json,
+        };
+        let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(asked).collect();
+        if kinds.is_empty() { Kind::ALL.to_vec() } else { kinds }
+    }
 }
 
 #[derive(Debug, clap::Args)]

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use hwasp_core::Policy;
 use hwasp_lab::checkpoint::Checkpoint;
+use hwasp_lab::export::ExportFile;
 use hwasp_lab::spec::Spec;
 use hwasp_lab::{Assembly, Evaluation, MeanInterval, Replay, Summary};
 
@@ -119,6 +120,16 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     }
     if evaluation.discarded_episodes > 0 {
         let _ = writeln!(text, "  {} episodes discarded: their physics failed", evaluation.discarded_episodes);
+    }
+    text
+}
+
+/// What was exported.
+pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile]) -> String {
+    let (name, method, seed) = (&spec.name, spec.method.name(), spec.seed);
+    let mut text = format!("{name} · {method} · seed {seed}, into {}:\n", out.display());
+    for ExportFile { name, contents } in files {
+        let _ = writeln!(text, "  {name:<22} {:>9.1} kB", contents.len() as f64 / 1e3);
     }
     text
 }

@@ -17,7 +17,7 @@ const STEPS: usize = 200;
 const STARTS: u64 = 8;
 
 /// Drives environments from `make` with random commands through `law` with random designs, and returns the first broken
-/// promise: sane names, limits and horizon, the law's ports; finite observations, states and rewards of the declared
+/// promise: sane names, limits, horizon and time step, the law's ports; finite observations, states and rewards of the declared
 /// lengths; starts that depend on the random stream and on nothing else (or on nothing at all, with `fixed_start`); the
 /// same bits for the same commands; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
 /// also at another one; nothing left of an episode after a reset, nothing shared between two environments.
@@ -54,7 +54,11 @@ fn check_spec(spec: &EnvSpec) -> Result<(), EnvFault> {
             return Err(EnvFault::Limits { name: port.name.clone(), lo: port.lo, hi: port.hi });
         }
     }
-    if spec.horizon == 0 { Err(EnvFault::Horizon) } else { Ok(()) }
+    if spec.horizon == 0 {
+        return Err(EnvFault::Horizon);
+    }
+    let time_step = spec.time_step;
+    if time_step.is_finite() && time_step > 0.0 { Ok(()) } else { Err(EnvFault::TimeStep { time_step }) }
 }
 
 fn names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {

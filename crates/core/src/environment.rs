@@ -67,6 +67,8 @@ pub struct EnvSpec {
     pub command: Vec<CommandPort>,
     /// Environment steps of an episode, if nothing ends it before.
     pub horizon: usize,
+    /// The time that a step takes, s: the controller acts once in it.
+    pub time_step: f64,
 }
 
 /// Physics, without purpose: what the robot and the world do under an effort.
@@ -88,7 +90,7 @@ pub trait Task: Send {
     /// The physics it is a task for.
     type Plant: Plant;
 
-    /// Names, units and limits. The horizon in it is the task's own.
+    /// Names, units, limits and time step. The horizon in it is the task's own.
     fn spec(&self) -> EnvSpec;
 
     /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
@@ -116,7 +118,7 @@ pub trait Task: Send {
 
 /// What a rollout drives. Efforts come from a law, commands from a controller; the environment knows neither.
 pub trait Environment: Send {
-    /// Names, units, limits and horizon.
+    /// Names, units, limits, horizon and time step.
     fn spec(&self) -> &EnvSpec;
 
     /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.

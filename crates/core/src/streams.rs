@@ -35,6 +35,8 @@ pub enum Purpose {
     Search = 10,
     /// Root seeds of the trainings inside of a search.
     InnerSeed = 11,
+    /// Observations at which exported controllers are compared.
+    Samples = 12,
 }
 
 /// The stream of this name.

@@ -48,6 +48,7 @@ enum Wrong {
     NoObservation,
     Limits,
     ZeroHorizon,
+    Timeless,
     OtherEffort,
     NanReward,
     Unwritten,
@@ -82,6 +83,7 @@ impl Point {
             effort: vec![port("force")],
             command: vec![CommandPort { name: "motor".into(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
             horizon: horizon.unwrap_or(HORIZON),
+            time_step: 0.1,
         };
         match wrong {
             Wrong::Unnamed => spec.observation[1] = port(" "),
@@ -89,6 +91,7 @@ impl Point {
             Wrong::NoObservation => spec.observation.clear(),
             Wrong::Limits => spec.command[0].hi = f64::INFINITY,
             Wrong::ZeroHorizon => spec.horizon = 0,
+            Wrong::Timeless => spec.time_step = 0.0,
             Wrong::OtherEffort => spec.effort[0] = port("torque"),
             Wrong::DeafToHorizon => spec.horizon = HORIZON,
             _ => {}
@@ -157,7 +160,7 @@ fn a_sound_environment_passes() {
 }
 
 #[test]
-fn names_limits_and_horizon() {
+fn names_limits_horizon_and_time_step() {
     assert_eq!(fault(Wrong::Unnamed, false), Err(EnvFault::Unnamed { kind: "observation", index: 1 }));
     assert_eq!(fault(Wrong::Twice, false), Err(EnvFault::Twice { kind: "observation", name: "x".into() }));
     assert_eq!(fault(Wrong::NoObservation, false), Err(EnvFault::NoPort { kind: "observation" }));
@@ -166,6 +169,7 @@ fn names_limits_and_horizon() {
         Err(EnvFault::Limits { name: "motor".into(), lo: -1.0, hi: f64::INFINITY })
     );
     assert_eq!(fault(Wrong::ZeroHorizon, false), Err(EnvFault::Horizon));
+    assert_eq!(fault(Wrong::Timeless, false), Err(EnvFault::TimeStep { time_step: 0.0 }));
     assert_eq!(
         fault(Wrong::OtherEffort, false).unwrap_err().to_string(),
         r#"the law's effort ports are ["force"], the environment's ["torque"]"#

@@ -17,6 +17,6 @@ pub use dense::{Activation, Mlp, MlpTape};
 pub use draw::GraphStyle;
 pub use float::Float;
 pub use gradcheck::{GradCheck, GradCheckError, GradCheckSettings, gradcheck};
-pub use program::{Program, ProgramTape};
+pub use program::{Binary, Interpreter, Program, ProgramTape, Unary};
 pub use scalar::Scalar;
 pub use trace::Var;

@@ -9,6 +9,7 @@
 #![allow(clippy::inline_always)]
 
 mod forward;
+mod interpret;
 mod jvp;
 mod lanes;
 mod lower;
@@ -19,9 +20,10 @@ mod vjp;
 
 use crate::Float;
 use crate::trace::{Node, Tape, Var};
-use ops::{Binary, Unary};
 use plan::ReversePlan;
 
+pub use interpret::Interpreter;
+pub use ops::{Binary, Unary};
 pub use tape::ProgramTape;
 
 /// Where a value lives while a program runs.

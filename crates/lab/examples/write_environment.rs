@@ -28,6 +28,8 @@ const WEIGHT: f64 = MASS * 9.81;
 const MOTOR_LIMIT: f64 = 30.0;
 /// Height of the shaft, m.
 const SHAFT: f64 = 3.0;
+/// Length of a step, s.
+const DT: f64 = 0.02;
 /// Where the cabin has to be, m above the floor.
 const GOAL: f64 = 2.0;
 
@@ -41,7 +43,6 @@ struct Cabin {
 impl Plant for Cabin {
     /// `effort` is the force of motor and spring, N upwards.
     fn advance(&mut self, effort: &[f64], _command: &[f64]) {
-        const DT: f64 = 0.02; // s
         self.speed += (effort[0] - WEIGHT) / MASS * DT;
         self.height += self.speed * DT;
     }
@@ -72,6 +73,7 @@ impl Task for Deliver {
                 hi: MOTOR_LIMIT,
             }],
             horizon: 150,
+            time_step: DT,
         }
     }
 

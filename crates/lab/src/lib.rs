@@ -11,6 +11,7 @@ pub mod compare;
 pub mod design;
 mod drawing;
 mod evaluate;
+pub mod export;
 pub mod files;
 mod gradient;
 mod learned;

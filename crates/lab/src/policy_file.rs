@@ -1,13 +1,11 @@
 //! Trained parameters as safetensors: a format that cannot run code, read by every framework.
 
-use std::collections::HashMap;
-
 use hwasp_core::{HardwarePolicy, Policy};
-use safetensors::tensor::{Dtype, TensorView};
-use safetensors::{SafeTensors, serialize};
+use safetensors::SafeTensors;
+use safetensors::tensor::Dtype;
 use thiserror::Error;
 
-use crate::tensors::check_header;
+use crate::tensors::{Piece, check_header, serialized};
 
 /// The largest file that is read, in bytes: the largest controller there can be, and some.
 pub(crate) const LARGEST_POLICY: u64 = 2 << 30;
@@ -57,20 +55,13 @@ fn tensors(policy: &HardwarePolicy) -> Vec<(String, Vec<usize>)> {
 
 /// The parameters as bytes of a safetensors file. Weights are `[in, out]`.
 pub fn write_policy(policy: &HardwarePolicy, params: &[f32]) -> Result<Vec<u8>, PolicyFileError> {
-    let mut at = 0;
-    let mut pieces = Vec::new();
-    for (name, shape) in tensors(policy) {
-        let count: usize = shape.iter().product();
-        let bytes: Vec<u8> = params[at..at + count].iter().flat_map(|p| p.to_le_bytes()).collect();
-        pieces.push((name, shape, bytes));
-        at += count;
-    }
-    let views = pieces
-        .iter()
-        .map(|(name, shape, bytes)| Ok((name.clone(), TensorView::new(Dtype::F32, shape.clone(), bytes)?)))
-        .collect::<Result<Vec<_>, safetensors::SafeTensorError>>()?;
-    let about = HashMap::from([("format".to_owned(), "hwasp-policy-1".to_owned())]);
-    Ok(serialize(views, Some(about))?)
+    let mut rest = params;
+    let pieces = tensors(policy).into_iter().map(|(name, shape)| {
+        let (values, after) = rest.split_at(shape.iter().product());
+        rest = after;
+        Piece::f32(name, shape, values)
+    });
+    Ok(serialized(&pieces.collect::<Vec<_>>(), [("format", "hwasp-policy-1".to_owned())])?)
 }
 
 /// Reads the parameters of `policy` back. Bytes are taken for hostile: names, shapes, types and values are checked.

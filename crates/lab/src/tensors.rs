@@ -1,7 +1,42 @@
-//! Safetensors of strangers.
+//! Safetensors: ours written, those of strangers looked at first.
 
-use safetensors::SafeTensorError;
-use safetensors::tensor::Metadata;
+use std::collections::HashMap;
+
+use safetensors::tensor::{Dtype, Metadata, TensorView};
+use safetensors::{SafeTensorError, serialize};
+
+/// An array to be written.
+pub(crate) struct Piece {
+    name: String,
+    dtype: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Piece {
+    /// In single precision.
+    pub(crate) fn f32(name: String, shape: Vec<usize>, values: &[f32]) -> Self {
+        Self { name, dtype: Dtype::F32, shape, bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect() }
+    }
+
+    /// In double precision.
+    pub(crate) fn f64(name: String, shape: Vec<usize>, values: &[f64]) -> Self {
+        Self { name, dtype: Dtype::F64, shape, bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect() }
+    }
+}
+
+/// The bytes of a file with these arrays and this metadata.
+pub(crate) fn serialized<const N: usize>(
+    pieces: &[Piece],
+    about: [(&str, String); N],
+) -> Result<Vec<u8>, SafeTensorError> {
+    let views = pieces
+        .iter()
+        .map(|piece| Ok((&piece.name, TensorView::new(piece.dtype, piece.shape.clone(), &piece.bytes)?)))
+        .collect::<Result<Vec<_>, SafeTensorError>>()?;
+    let about: HashMap<String, String> = about.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    serialize(views, Some(about))
+}
 
 /// The longest header that is read, bytes: tens of thousands of tensors. While it is read it takes eighteen times its length,
 /// and the format allows 100 MB.

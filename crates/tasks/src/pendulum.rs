@@ -222,6 +222,7 @@ impl Task for SwingUp {
                 hi: MOTOR_LIMIT,
             }],
             horizon: self.horizon,
+            time_step: TIME_STEP,
         }
     }
 

@@ -175,6 +175,7 @@ pub struct ReachTask {
     goal: f64,
     command_cost: f64,
     horizon: usize,
+    time_step: f64,
 }
 
 impl Task for ReachTask {
@@ -188,6 +189,7 @@ impl Task for ReachTask {
             effort: vec![port("velocity", Dimension::Speed)],
             command: vec![CommandPort { name: "speed".to_owned(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
             horizon: self.horizon,
+            time_step: self.time_step,
         }
     }
 
@@ -242,7 +244,7 @@ impl Reach {
     /// An environment whose plant can be looked at; `horizon` replaces the task's own.
     pub fn robot(&self, horizon: Option<usize>) -> Robot<ReachTask> {
         let &ReachSettings { goal, time_step, horizon: own, command_cost, .. } = &self.settings;
-        Robot::new(Rail { time_step, x: 0.0 }, ReachTask { goal, command_cost, horizon: own }, horizon)
+        Robot::new(Rail { time_step, x: 0.0 }, ReachTask { goal, command_cost, horizon: own, time_step }, horizon)
     }
 
     /// The best gear.

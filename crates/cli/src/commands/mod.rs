@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod design;
 pub(crate) mod eval;
+pub(crate) mod export;
 pub(crate) mod graph;
 pub(crate) mod list;
 pub(crate) mod play;

@@ -42,6 +42,12 @@ pub enum EnvFault {
     /// An episode without steps.
     #[error("the horizon is 0, but an episode has at least one step")]
     Horizon,
+    /// A step that takes no time.
+    #[error("the time step is {time_step} s, but it has to be positive and finite")]
+    TimeStep {
+        /// What the environment says, s.
+        time_step: f64,
+    },
     /// The law reads or drives other ports than the environment has.
     #[error("the law's {kind} ports are {law:?}, the environment's {environment:?}")]
     Ports {

@@ -85,6 +85,7 @@ impl Task for Stay {
             effort: vec![port("pull"), port("push")],
             command: vec![motor("left", -1.0, 1.0), motor("right", -2.0, 4.0)],
             horizon: HORIZON,
+            time_step: 0.1,
         }
     }
 

@@ -4,26 +4,41 @@ use crate::Float;
 
 /// A function of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Unary {
+pub enum Unary {
+    /// -a.
     Neg,
+    /// e to the power of a.
     Exp,
+    /// The natural logarithm.
     Ln,
+    /// The square root.
     Sqrt,
+    /// The sine of an angle in radians.
     Sin,
+    /// The cosine of an angle in radians.
     Cos,
+    /// The hyperbolic tangent.
     Tanh,
+    /// The absolute value.
     Abs,
+    /// The logistic function 1 / (1 + e^-a).
     Sigmoid,
 }
 
 /// A function of two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Binary {
+pub enum Binary {
+    /// a + b.
     Add,
+    /// a - b.
     Sub,
+    /// a·b.
     Mul,
+    /// a / b.
     Div,
+    /// The smaller of two.
     Min,
+    /// The larger of two.
     Max,
 }
 

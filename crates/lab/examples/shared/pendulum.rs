@@ -14,6 +14,10 @@ pub(crate) const MOTOR_LIMIT: f64 = 0.1;
 pub(crate) const GRAVITY_TORQUE: f64 = 9.81 * 0.3;
 /// m·l², kg·m².
 const INERTIA: f64 = 0.09;
+/// Length of a simulation step, s.
+const DT: f64 = 0.005;
+/// Simulation steps in one of the controller's.
+const SUBSTEPS: u32 = 4;
 
 /// A point mass on a massless arm.
 #[derive(Clone, Debug, Default)]
@@ -24,8 +28,7 @@ pub(crate) struct Pendulum {
 
 impl Plant for Pendulum {
     fn advance(&mut self, effort: &[f64], _command: &[f64]) {
-        const DT: f64 = 0.005; // four of them are one step of the controller
-        for _ in 0..4 {
+        for _ in 0..SUBSTEPS {
             let torque = effort[0] - GRAVITY_TORQUE * self.angle.sin();
             self.speed += torque / INERTIA * DT;
             self.angle += self.speed * DT;
@@ -58,6 +61,7 @@ impl Task for Lift {
                 hi: MOTOR_LIMIT,
             }],
             horizon: 100,
+            time_step: f64::from(SUBSTEPS) * DT,
         }
     }
 

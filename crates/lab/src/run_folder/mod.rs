@@ -10,6 +10,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use thiserror::Error;
 
 pub use self::provenance::Provenance;
@@ -172,6 +173,13 @@ pub(crate) fn io_error(action: &'static str, path: &Path, source: io::Error) -> 
 
 pub(crate) fn encode(file: &'static str, error: &dyn std::fmt::Display) -> RunError {
     RunError::Encode { file, message: error.to_string() }
+}
+
+/// A value as the text of a JSON file.
+pub(crate) fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunError> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(|e| encode(file, &e))?;
+    text.push(b'\n');
+    Ok(text)
 }
 
 /// Reads a file that a stranger may have sent.

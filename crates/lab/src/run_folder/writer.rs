@@ -6,13 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-
 use super::lock::{LOCK, RunLock};
 use super::table::Table;
 use super::{
     CURVES, DESIGN, EXPERIMENT, METRICS, POLICY, PROVENANCE, Provenance, RunError, SUMMARY, SavedRun, encode, io_error,
-    read_limited,
+    json, read_limited,
 };
 use crate::assemble::Assembly;
 use crate::checkpoint::{Checkpoint, CheckpointStore, Found, experiment_hash};
@@ -310,12 +308,6 @@ impl Observer for RunFolder {
     fn due(&self) -> bool {
         self.last_checkpoint.elapsed() >= self.keeping.checkpoint_every
     }
-}
-
-fn json(name: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunError> {
-    let mut text = serde_json::to_vec_pretty(value).map_err(|e| encode(name, &e))?;
-    text.push(b'\n');
-    Ok(text)
 }
 
 /// Why a folder cannot be created, in words where it is to lie in a file.

@@ -13,6 +13,8 @@ pub struct MassSpringTask {
     goal: f64,
     motor_limit: f64,
     horizon: usize,
+    /// Of an action, s.
+    time_step: f64,
     max_position: f64,
     max_speed: f64,
     /// How far the lower mass starts below the upper one.
@@ -36,6 +38,7 @@ impl MassSpringTask {
             goal: settings.goal,
             motor_limit: settings.motor_limit(),
             horizon: settings.horizon,
+            time_step: settings.time_step * settings.substeps as f64,
             max_position: settings.max_position,
             max_speed: settings.max_speed,
             initial_gap,
@@ -64,6 +67,7 @@ impl Task for MassSpringTask {
                 hi: self.motor_limit,
             }],
             horizon: self.horizon,
+            time_step: self.time_step,
         }
     }
 

@@ -246,11 +246,11 @@ pub(crate) struct ExportArgs {
     /// The folder; files of an earlier export of the same run are replaced [default: export/ in the run folder]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) kinds: KindArgs,
     /// Also write random observations with this program's answers, to hold another runtime against: samples.safetensors
     #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=export::MOST_SAMPLES))]
     pub(crate) samples: Option<u64>,
+    #[command(flatten)]
+    pub(crate) kinds: KindArgs,
 }
 
 /// What is exported.

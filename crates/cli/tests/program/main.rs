@@ -10,6 +10,7 @@ mod designs;
 #[cfg(target_os = "linux")]
 mod errors;
 mod experiments;
+mod exports;
 mod folders;
 mod help;
 mod pipes;

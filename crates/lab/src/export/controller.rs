@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::contract::{Contract, activation_name};
 use super::deployed::Deployed;
 use super::{ExportError, ExportFile};
-use crate::run_folder::{encode, json as to_json};
+use crate::run_folder::encode;
 use crate::tensors::{Piece, serialized};
 
 const SAFETENSORS: &str = "controller.safetensors";
@@ -78,7 +78,7 @@ struct JsonController<'a> {
     layers: Vec<JsonLayer<'a>>,
 }
 
-/// All numbers as text.
+/// All numbers as text, on one line: who reads it is a program.
 pub(super) fn json(deployed: &Deployed, contract: &Contract) -> Result<ExportFile, ExportError> {
     let layers = deployed.layers();
     let layers = layers.iter().map(|layer| JsonLayer {
@@ -86,6 +86,7 @@ pub(super) fn json(deployed: &Deployed, contract: &Contract) -> Result<ExportFil
         weight: layer.weight.chunks_exact(layer.outputs).collect(),
         bias: layer.bias,
     });
-    let contents = to_json(JSON, &JsonController { contract, layers: layers.collect() })?;
+    let controller = JsonController { contract, layers: layers.collect() };
+    let contents = serde_json::to_vec(&controller).map_err(|e| encode(JSON, &e))?;
     Ok(ExportFile { name: JSON.to_owned(), contents })
 }

@@ -21,6 +21,15 @@ fn remove(sandbox: &Sandbox, name: &str) {
     fs::remove_file(sandbox.path(name)).unwrap();
 }
 
+/// What an export of another run says of itself.
+const EXPORTED: &str = r#"{"format": "hwasp-export-1", "hwasp_version": "0.1.0", "experiment": "mass-spring",
+"method": "hwasp", "seed": 3, "files": []}"#;
+
+fn put_manifest(sandbox: &Sandbox, manifest: &str) {
+    fs::create_dir(sandbox.path("robot")).unwrap();
+    sandbox.write("robot/export.json", manifest);
+}
+
 pub(super) const CASES: &[Case] = &[
     case("A folder that does not exist", Nothing, "hwasp eval nowhere"),
     case("The same, plotted", Nothing, "hwasp plot nowhere"),
@@ -101,6 +110,18 @@ pub(super) const CASES: &[Case] = &[
         }),
         "hwasp design run",
     ),
+    case("An export of what does not exist", Nothing, "hwasp export nowhere"),
+    case(
+        "An export over a file that no export wrote",
+        run!(|s| {
+            fs::create_dir(s.path("robot")).unwrap();
+            s.write("robot/controller.json", "precious");
+        }),
+        "hwasp export run --out robot",
+    ),
+    case("An export beside that of another run", run!(|s| put_manifest(s, EXPORTED)), "hwasp export run --out robot"),
+    case("An export beside a damaged one", run!(|s| put_manifest(s, "{}")), "hwasp export run --out robot"),
+    case("An export into a file", run!(|s| s.write("file", "")), "hwasp export run --out file").late(),
     case("A comparison in a run folder", Made(Sandbox::put_run), "hwasp compare reach --out run"),
     case("A comparison in a file", Made(|s| s.write("file", "")), "hwasp compare reach --out file"),
     case(

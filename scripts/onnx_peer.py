@@ -21,7 +21,7 @@ PROGRAM = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release" 
 PINNED = ["onnxruntime==1.32.0", "onnx==1.23.2", "numpy==2.4.6", "safetensors==0.8.0"]
 SAMPLES = 10_000
 TOLERANCE = 1e-6
-TRAINED = ["mass-spring hwasp", "mass-spring minimal", "bar-length hwasp", "pendulum hwasp", "reach cmaes"]
+TRAINED = ["mass-spring hwasp", "mass-spring minimal", "bar-length hwasp", "pendulum hwasp", "reach hwasp"]
 
 # Runs inside the environment: [file, bytes, tensor, largest difference, unit, the same as a share] for an export.
 INSIDE = """

@@ -33,9 +33,11 @@ fn the_contract_and_the_numbers() {
     let sandbox = Sandbox::with_run("export-contract");
     assert!(sandbox.run("export run --json").status.success());
     insta::assert_snapshot!(without_figures(&String::from_utf8(sandbox.read("run/export/contract.json")).unwrap()));
-    let (contract, controller) = (json(&sandbox, "run/export/contract.json"), json(&sandbox, "run/export/controller.json"));
+    let (contract, controller) =
+        (json(&sandbox, "run/export/contract.json"), json(&sandbox, "run/export/controller.json"));
     assert_eq!((&controller["command"], &controller["design"]), (&contract["command"], &contract["design"]));
-    let sizes: Vec<u64> = contract["network"]["sizes"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    let sizes: Vec<u64> =
+        contract["network"]["sizes"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
     for (layer, size) in controller["layers"].as_array().unwrap().iter().zip(sizes.windows(2)) {
         let weight = layer["weight"].as_array().unwrap();
         assert_eq!(weight.len() as u64, size[0]);

@@ -72,7 +72,12 @@ impl Program {
     ///
     /// # Panics
     /// If there are not as many `uniforms` and `columns` as the program has.
-    pub fn interpret<I: Interpreter>(&self, uniforms: &[I::Value], columns: &[I::Value], with: &mut I) -> Vec<I::Value> {
+    pub fn interpret<I: Interpreter>(
+        &self,
+        uniforms: &[I::Value],
+        columns: &[I::Value],
+        with: &mut I,
+    ) -> Vec<I::Value> {
         assert_eq!(uniforms.len(), self.uniform_names.len(), "one value per uniform input");
         assert_eq!(columns.len(), self.column_names.len(), "one value per column");
         let mut values = Values {

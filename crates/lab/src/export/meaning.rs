@@ -78,3 +78,30 @@ fn hand(grasp: &GraspProblem, role: Role, name: &str) -> Option<&'static str> {
         _ => return None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assemble::Assembly;
+    use crate::spec;
+
+    /// Every port of every problem, in training and in deployment.
+    #[test]
+    fn nothing_is_without_a_meaning() {
+        let hands: &[&str] = if cfg!(feature = "mujoco") { &["z-grasp", "3d-grasp"] } else { &[] };
+        for experiment in ["mass-spring", "bar-length", "reach", "pendulum"].iter().chain(hands) {
+            let spec = spec::resolve(spec::load(experiment).unwrap(), None).unwrap();
+            let problem = Assembly::new(&spec).unwrap().problem;
+            for world in [problem.training, problem.deployment] {
+                let env = world.make.make(None).spec().clone();
+                let ports =
+                    [(Role::Observation, env.observation), (Role::State, env.state), (Role::Effort, env.effort)];
+                let ports = ports.into_iter().flat_map(|(role, ports)| ports.into_iter().map(move |p| (role, p.name)));
+                let commands = env.command.into_iter().map(|port| (Role::Command, port.name));
+                for (role, name) in ports.chain(commands) {
+                    assert!(meaning(&spec.task.problem, role, &name).is_some(), "{experiment}: {role:?} {name}");
+                }
+            }
+        }
+    }
+}

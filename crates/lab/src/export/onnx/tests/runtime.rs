@@ -132,9 +132,11 @@ fn together(a: &[usize], b: &[usize]) -> Vec<usize> {
 
 fn broadcast(dims: &[usize], kind: i32, value: impl Fn(&[usize]) -> f64) -> Tensor {
     let place = |index: usize| {
+        let mut at = vec![0; dims.len()];
         let mut rest = index;
-        let mut at: Vec<usize> = dims.iter().rev().map(|&n| (rest % n, rest /= n).0).collect();
-        at.reverse();
+        for (at, length) in at.iter_mut().zip(dims).rev() {
+            (*at, rest) = (rest % length, rest / length);
+        }
         at
     };
     Tensor::new(kind, dims.to_vec(), (0..dims.iter().product()).map(|i| value(&place(i))).collect())

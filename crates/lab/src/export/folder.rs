@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ExportError, ExportFile};
 use crate::files::{Disk, Files, replace};
-use crate::run_folder::{io_error, json, read_limited};
+use crate::run_folder::{io_error, json, read_limited, told};
 use crate::spec::Spec;
 
 /// What an export says of itself, in the folder.
@@ -76,7 +76,7 @@ fn put(folder: &Path, name: &str, contents: &[u8]) -> Result<(), ExportError> {
     let path = folder.join(name);
     let around = path.parent().unwrap_or(folder);
     let error = |action, path, source| ExportError::Write(io_error(action, path, source));
-    Disk.create_folder(around).map_err(|source| error("create", around, source))?;
+    Disk.create_folder(around).map_err(|source| error("create", around, told(around, source)))?;
     replace(&Disk, &path, contents).map_err(|source| error("write", &path, source))
 }
 

@@ -16,6 +16,7 @@ use thiserror::Error;
 pub use self::provenance::Provenance;
 pub use self::saved::SavedRun;
 pub(crate) use self::saved::saved_spec;
+pub(crate) use self::writer::told;
 pub use self::writer::{Keeping, Resumed, RunFolder};
 use crate::assemble::AssembleError;
 use crate::checkpoint::CheckpointError;

@@ -311,7 +311,7 @@ impl Observer for RunFolder {
 }
 
 /// Why a folder cannot be created, in words where it is to lie in a file.
-fn told(folder: &Path, error: io::Error) -> io::Error {
+pub(crate) fn told(folder: &Path, error: io::Error) -> io::Error {
     let file = folder.ancestors().find(|above| above.is_file());
     file.map_or(error, |file| io::Error::new(io::ErrorKind::NotADirectory, format!("{} is a file", file.display())))
 }

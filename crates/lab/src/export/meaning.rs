@@ -28,9 +28,9 @@ pub(super) fn meaning(problem: &Problem, role: Role, name: &str) -> Option<&'sta
 fn mass_spring(name: &str) -> Option<&'static str> {
     Some(match name {
         "y1" => "the upper mass below the ceiling",
-        "v1" => "its speed, downwards",
+        "v1" => "speed of the upper mass, downwards",
         "y2" => "the lower mass below the ceiling",
-        "v2" => "its speed, downwards",
+        "v2" => "speed of the lower mass, downwards",
         "motor" => "pull of the motor's string, downwards",
         "effort" => "springs and motor together on both masses, downwards",
         "length" => "length of the bar between the masses",

@@ -7,7 +7,7 @@ use hwasp_mujoco::engine::Simulation;
 use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Ramp, Script, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
-    TendonHandSettings, mjcf, names,
+    TendonHandSettings, mjcf, names, urdf,
 };
 use rand::RngExt;
 
@@ -89,6 +89,49 @@ fn free_closing_is_the_closed_form() {
             }
         }
     }
+}
+
+/// The URDF has the links where the MJCF has them, with the same inertia: but for the armature, which it does not know, its
+/// mass matrix is that of the joints.
+#[test]
+fn the_urdf_is_the_same_hand() {
+    let hand = HandDescription::default();
+    let mut urdf = Simulation::from_mjcf(&urdf(&hand, &SEARCHED).unwrap()).unwrap();
+    let mut native = bare(Drive::NativeTendon { design: SEARCHED });
+    let (n, palm_slides) = (names::JOINTS.len(), names::PALM_JOINTS.len());
+    assert_eq!((urdf.qvel().len(), native.qvel().len()), (n, n + palm_slides));
+    let mut random = rng(3);
+    let mut largest = [0.0_f64; 3];
+    for _ in 0..20 {
+        for name in names::JOINTS {
+            let angle = 1.57 * random.random::<f64>();
+            for sim in [&mut urdf, &mut native] {
+                let at = sim.joint(name).unwrap().qpos.start;
+                sim.qpos_mut()[at] = angle;
+            }
+        }
+        urdf.forward().unwrap();
+        native.forward().unwrap();
+        for name in names::LINK_BODIES {
+            let (ours, theirs) = (native.body(name).unwrap(), urdf.body(name).unwrap());
+            let place = native.body_position(ours).into_iter().zip([0.0, 0.0, hand.palm.home_height]);
+            for ((ours, above), theirs) in place.zip(urdf.body_position(theirs)) {
+                largest[0] = largest[0].max((ours - above - theirs).abs());
+            }
+            // A turn is a quaternion or its opposite.
+            let turns = native.body_orientation(ours).into_iter().zip(urdf.body_orientation(theirs));
+            largest[1] = largest[1].max(1.0 - turns.map(|(a, b)| a * b).sum::<f64>().abs());
+        }
+        let mut matrices = [vec![0.0; n * n], vec![0.0; (n + palm_slides) * (n + palm_slides)]];
+        urdf.mass_matrix(&mut matrices[0]);
+        native.mass_matrix(&mut matrices[1]);
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let armature = if i == j { hand.joint.armature } else { 0.0 };
+            let wanted = matrices[1][(i + palm_slides) * (n + palm_slides) + j + palm_slides] - armature;
+            largest[2] = largest[2].max((matrices[0][i * n + j] - wanted).abs());
+        }
+    }
+    assert!(largest[0] < 1e-12 && largest[1] < 1e-12 && largest[2] < 1e-15, "{largest:?} m, -, kg·m²");
 }
 
 #[test]

@@ -83,6 +83,13 @@ impl Assembly {
         native(self, design)
     }
 
+    /// The same of a model that was written to a file before, `mjcf`.
+    #[cfg(feature = "mujoco")]
+    pub fn native_from(&self, mjcf: &str) -> Result<World, AssembleError> {
+        let settings = grasp_settings(self.grasp_problem()?, self.spec());
+        Ok(world(hwasp_mujoco::grasp::Grasp::native_from(settings, mjcf)?))
+    }
+
     /// What the experiment says of its grasps, if it is about any.
     pub(crate) fn grasp_problem(&self) -> Result<&GraspProblem, AssembleError> {
         match &self.spec().task.problem {

@@ -43,7 +43,7 @@ use thiserror::Error;
 
 pub use film::{Film, Filmed, Stage, Still};
 pub use object::Object;
-pub use plant::{GraspPlant, SUBSTEPS};
+pub use plant::GraspPlant;
 pub use script::Script;
 pub use settings::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
 pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
@@ -88,27 +88,34 @@ pub struct Grasp {
 impl Grasp {
     /// The plant in which one learns: the law's torques act on independent joints.
     pub fn new(settings: GraspSettings) -> Result<Self, GraspError> {
-        Self::build(settings, hand::Drive::JointTorque)
+        let model = mjcf(&settings.hand, &MjcfOptions::default())?;
+        Self::build(settings, &model, |_| Ok(plant::Drive::Torques))
     }
 
     /// The same task on the hand with MuJoCo's own tendons, springs and pulleys of `design`, at the simulation's rate, in
     /// which the law has no say: what a controller has to master as it would the built hand.
     pub fn native(settings: GraspSettings, design: &[f64; DESIGN_LEN]) -> Result<Self, GraspError> {
-        Self::build(settings, hand::Drive::NativeTendon { design: *design })
+        let drive = hand::Drive::NativeTendon { design: *design };
+        let model = mjcf(&settings.hand, &MjcfOptions { drive, ..MjcfOptions::default() })?;
+        Self::native_from(settings, &model)
     }
 
-    fn build(settings: GraspSettings, drive: hand::Drive) -> Result<Self, GraspError> {
+    /// The same, of a model that was written to a file: the text of [`mjcf`] with native tendons, or one with the same names.
+    pub fn native_from(settings: GraspSettings, model: &str) -> Result<Self, GraspError> {
+        let [a, b, c] = names::TENDONS;
+        Self::build(settings, model, |sim| Ok(plant::Drive::Tendons([sim.tendon(a)?, sim.tendon(b)?, sim.tendon(c)?])))
+    }
+
+    fn build(
+        settings: GraspSettings,
+        model: &str,
+        drive: impl FnOnce(&Simulation) -> Result<plant::Drive, UnknownName>,
+    ) -> Result<Self, GraspError> {
         settings.check()?;
         let law = TendonHandSettings { palm: settings.palm, range: settings.range, initial: settings.initial };
         let law = Law::new(TendonHand::new(&settings.hand.transmission, &law)?);
-        let native = matches!(drive, hand::Drive::NativeTendon { .. });
-        let sim = Simulation::from_mjcf(&mjcf(&settings.hand, &MjcfOptions { drive, ..MjcfOptions::default() })?)?;
-        let drive = if native {
-            let [a, b, c] = names::TENDONS;
-            plant::Drive::Tendons([sim.tendon(a)?, sim.tendon(b)?, sim.tendon(c)?])
-        } else {
-            plant::Drive::Torques
-        };
+        let sim = Simulation::from_mjcf(model)?;
+        let drive = drive(&sim)?;
         let plant = GraspPlant::new(&settings, sim, drive)?;
         Ok(Self { settings, law, plant })
     }

@@ -7,10 +7,7 @@ use rand_distr::StandardNormal;
 use super::object::{Object, vertical};
 use super::settings::GraspSettings;
 use crate::engine::{BodyId, EditError, GeomId, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
-use hwasp_tasks::hand::{TransmissionDescription, names};
-
-/// Simulation steps of an environment step: 10 ms of 1 ms each \[P\].
-pub const SUBSTEPS: usize = 10;
+use hwasp_tasks::hand::{SUBSTEPS, TransmissionDescription, names};
 
 /// Where the palm's target may be, m: from here to there in x, y and z.
 const WORKSPACE: [[f64; 2]; 3] = [[-0.15, 0.15], [-0.15, 0.15], [0.02, 0.60]];

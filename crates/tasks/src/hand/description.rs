@@ -11,6 +11,9 @@ pub use transmission::TransmissionDescription;
 
 use super::error::{HandError, positive, within};
 
+/// Simulation steps of an environment step: 10 ms of 1 ms each \[P\].
+pub const SUBSTEPS: usize = 10;
+
 /// The palm and how it is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PalmDescription {
@@ -38,6 +41,15 @@ impl Default for PalmDescription {
             force_limit: 100.0,
             home_height: 0.300,
         }
+    }
+}
+
+impl PalmDescription {
+    /// Principal moments about its centre along x, y and z, kg·m²: those of a solid box. In the simulation it does not turn,
+    /// and nothing depends on them.
+    pub fn inertia(&self) -> [f64; 3] {
+        let [x, y, z] = self.half_size;
+        [y * y + z * z, x * x + z * z, x * x + y * y].map(|sum| self.mass / 3.0 * sum)
     }
 }
 
@@ -109,6 +121,11 @@ impl HandDescription {
     /// Mass of palm and links, kg.
     pub fn mass(&self) -> f64 {
         self.palm.mass + self.digits().iter().map(|d| d.proximal.mass + d.distal.mass).sum::<f64>()
+    }
+
+    /// Length of an environment step, s.
+    pub fn step_time(&self) -> f64 {
+        SUBSTEPS as f64 * self.time_step
     }
 
     /// Whether a hand can be made of these numbers.

@@ -38,6 +38,14 @@ pub enum HandError {
         /// The three.
         inertia: [f64; 3],
     },
+    /// A part that cannot be made.
+    #[error("{part} cannot be made: {message}")]
+    Part {
+        /// Which.
+        part: &'static str,
+        /// What is wrong with it.
+        message: String,
+    },
     /// Limits or starts of the design parameters.
     #[error(transparent)]
     Design(#[from] DesignError),

@@ -5,6 +5,7 @@ mod parts;
 mod settings;
 
 pub use drive::Drive;
+pub(super) use parts::link_colour;
 
 use super::description::HandDescription;
 use super::error::{HandError, positive, within};
@@ -56,6 +57,7 @@ pub fn mjcf(hand: &HandDescription, options: &MjcfOptions) -> Result<String, Han
         .with(settings::asset())
         .with(world)
         .with_all(drive::tendons(&options.drive))
+        .with_all(drive::motor(hand, &options.drive))
         .with(drive::actuators(hand, &options.drive))
         .with(parts::home(hand, options));
     Ok(model.to_text())

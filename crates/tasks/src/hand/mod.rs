@@ -37,17 +37,23 @@ mod error;
 mod law;
 mod mjcf;
 pub mod names;
+mod parts;
+mod solid;
 mod space;
 mod statics;
+mod urdf;
 mod xml;
 
 pub use closing::{ClosingPoint, FreeClosing, closing_chart, closing_end};
 pub use description::{
     FingerDescription, HandDescription, JointDescription, LinkDescription, ObjectDescription, PalmDescription,
-    TransmissionDescription,
+    SUBSTEPS, TransmissionDescription,
 };
 pub use error::HandError;
 pub use law::{PalmMotion, TendonHand, TendonHandSettings};
 pub use mjcf::{Drive, MjcfOptions, mjcf};
+pub use parts::{Part, Stock, parts, scad};
+pub use solid::{Mesh, MeshError};
 pub use space::{DESIGN_LEN, HandParameter, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band, torque_ratio};
+pub use urdf::urdf;

@@ -42,6 +42,22 @@ pub(super) fn tendons(drive: &Drive) -> Option<Element> {
     Some(Element::new("tendon").with_all(fixed))
 }
 
+/// What an actuator cannot say of the motor on the spool, for whoever sets the winches' controls: N, m, m, and m in each of
+/// the steps that the controller makes, s.
+pub(super) fn motor(hand: &HandDescription, drive: &Drive) -> Option<Element> {
+    let Drive::NativeTendon { .. } = drive else { return None };
+    let motor = &hand.transmission;
+    let numbers = [
+        ("tension_limit", motor.tension_limit),
+        ("spool_radius", motor.spool_radius),
+        ("travel", motor.travel),
+        ("step_limit", motor.step_limit),
+        ("step_time", hand.step_time()),
+    ];
+    let numeric = |(name, value)| Element::new("numeric").set("name", name).set("data", value);
+    Some(Element::new("custom").with_all(numbers.map(numeric)))
+}
+
 /// Position control of the palm, then torques or winches.
 pub(super) fn actuators(hand: &HandDescription, drive: &Drive) -> Element {
     let palm = PALM_JOINTS.iter().zip(PALM_ACTUATORS).map(|(joint, name)| {

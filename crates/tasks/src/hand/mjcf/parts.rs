@@ -58,9 +58,8 @@ pub(super) fn floor(hand: &HandDescription) -> Element {
 
 /// The palm on three slides. Its coordinates are its position in the world.
 pub(super) fn palm(hand: &HandDescription) -> Element {
-    let (palm, [x, y, z]) = (&hand.palm, hand.palm.half_size);
-    // A solid box; as it does not turn, nothing depends on it.
-    let inertia = [y * y + z * z, x * x + z * z, x * x + y * y].map(|sum| palm.mass / 3.0 * sum);
+    let palm = &hand.palm;
+    let middle = [0.0, 0.0, palm.half_size[2]];
     let home = [0.0, 0.0, palm.home_height];
     let slides = PALM_JOINTS.iter().enumerate().map(|(axis, name)| {
         let mut direction = [0.0; 3];
@@ -71,12 +70,12 @@ pub(super) fn palm(hand: &HandDescription) -> Element {
         .set("name", PALM_GEOM)
         .set("type", "box")
         .set_all("size", &palm.half_size)
-        .set_all("pos", &[0.0, 0.0, z]);
+        .set_all("pos", &middle);
     Element::new("body")
         .set("name", PALM)
         .set_all("pos", &home)
         .set("gravcomp", 1)
-        .with(inertial(palm.mass, [0.0, 0.0, z], inertia))
+        .with(inertial(palm.mass, middle, palm.inertia()))
         .with_all(slides)
         .with(of_the_hand(shape).set("rgba", "0.30 0.32 0.35 1"))
 }
@@ -108,18 +107,21 @@ fn link(hand: &HandDescription, index: usize, link: &LinkDescription, drive: &Dr
         .set("type", "capsule")
         .set_all("fromto", &[0.0, 0.0, 0.0, 0.0, 0.0, link.length])
         .set("size", link.radius);
-    // The thumb red, the fingers blue; distal links paler.
-    let colour = match index {
-        0 => "0.74 0.24 0.16 1",
-        1 => "0.92 0.45 0.34 1",
-        _ if index.is_multiple_of(2) => "0.13 0.36 0.62 1",
-        _ => "0.36 0.60 0.85 1",
-    };
     Element::new("body")
         .set("name", LINK_BODIES[index])
         .with(inertial(link.mass, [0.0, 0.0, link.centre], link.inertia))
         .with(spring(joint, index, drive))
-        .with(of_the_hand(shape).set("rgba", colour))
+        .with(of_the_hand(shape).set("rgba", link_colour(index)))
+}
+
+/// The thumb red, the fingers blue; distal links paler.
+pub(in crate::hand) fn link_colour(index: usize) -> &'static str {
+    match index {
+        0 => "0.74 0.24 0.16 1",
+        1 => "0.92 0.45 0.34 1",
+        _ if index.is_multiple_of(2) => "0.13 0.36 0.62 1",
+        _ => "0.36 0.60 0.85 1",
+    }
 }
 
 /// A free body whose one geom the tasks edit.

@@ -75,7 +75,8 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
     Design(DesignArgs),
-    /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON
+    /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON; a hand
+    /// as MJCF, URDF, STL and OpenSCAD
     Export(ExportArgs),
     /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
     Replay(ReplayArgs),
@@ -255,7 +256,7 @@ pub(crate) struct ExportArgs {
 
 /// What is exported.
 #[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Kinds [default: all of them]")]
+#[command(next_help_heading = "Kinds [default: all that there are of the run]")]
 pub(crate) struct KindArgs {
     /// controller.onnx, and policy.onnx: the controller with the law of the hardware as built
     #[arg(long)]
@@ -266,18 +267,33 @@ pub(crate) struct KindArgs {
     /// controller.json: the same as text
     #[arg(long)]
     json: bool,
+    /// hand.xml: the hand with tendons and springs, and its task, for MuJoCo
+    #[arg(long)]
+    mjcf: bool,
+    /// hand.urdf: the hand's links and joints, with the STL files as what is seen
+    #[arg(long)]
+    urdf: bool,
+    /// palm.stl and each link and pulley, to print, in mm
+    #[arg(long)]
+    stl: bool,
+    /// hand.scad: the same for OpenSCAD, with the parameters at its top
+    #[arg(long)]
+    scad: bool,
 }
 
 impl KindArgs {
-    /// What is asked for, or everything.
-    pub(crate) fn kinds(&self) -> Vec<Kind> {
+    /// What is asked for.
+    pub(crate) fn asked(&self) -> Vec<Kind> {
         let asked = |kind: &Kind| match kind {
             Kind::Onnx => self.onnx,
             Kind::Safetensors => self.safetensors,
             Kind::Json => self.json,
+            Kind::Mjcf => self.mjcf,
+            Kind::Urdf => self.urdf,
+            Kind::Stl => self.stl,
+            Kind::Scad => self.scad,
         };
-        let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(asked).collect();
-        if kinds.is_empty() { Kind::ALL.to_vec() } else { kinds }
+        Kind::ALL.into_iter().filter(asked).collect()
     }
 }
 

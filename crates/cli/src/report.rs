@@ -7,7 +7,7 @@ use std::path::Path;
 
 use hwasp_core::Policy;
 use hwasp_lab::checkpoint::Checkpoint;
-use hwasp_lab::export::ExportFile;
+use hwasp_lab::export::{ExportFile, Kind};
 use hwasp_lab::spec::Spec;
 use hwasp_lab::{Assembly, Evaluation, MeanInterval, Replay, Summary};
 
@@ -124,12 +124,17 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     text
 }
 
-/// What was exported.
-pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile]) -> String {
+/// What was exported, and what there is not of this run.
+pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile], left_out: &[Kind]) -> String {
     let (name, method, seed) = (&spec.name, spec.method.name(), spec.seed);
     let mut text = format!("{name} · {method} · seed {seed}, into {}:\n", out.display());
     for ExportFile { name, contents } in files {
-        let _ = writeln!(text, "  {name:<22} {:>9.1} kB", contents.len() as f64 / 1e3);
+        let _ = writeln!(text, "  {name:<26} {:>9.1} kB", contents.len() as f64 / 1e3);
+    }
+    if !left_out.is_empty() {
+        let kinds: Vec<&str> = left_out.iter().map(|kind| kind.name()).collect();
+        let problem = spec.task.kind().name();
+        let _ = writeln!(text, "  without {}: {problem} has no hand", kinds.join(", "));
     }
     text
 }

@@ -1,6 +1,6 @@
 //! `hwasp export`.
 
-use hwasp_lab::export::{ExportError, Source, export};
+use hwasp_lab::export::{ExportError, Kind, Source, export};
 
 use super::run_folder;
 use crate::args::ExportArgs;
@@ -10,11 +10,15 @@ use crate::{output, report};
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let source = Source::open(run_folder(&args.run)?).map_err(Failure::input)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join("export"));
-    let files = export(&source, &args.kinds.kinds(), args.samples, &out).map_err(|error| match error {
+    let (mut kinds, mut left_out) = (args.kinds.asked(), Vec::new());
+    if kinds.is_empty() {
+        (kinds, left_out) = Kind::ALL.into_iter().partition(|kind| kind.is_of(source.spec()));
+    }
+    let files = export(&source, &kinds, args.samples, &out).map_err(|error| match error {
         ExportError::Run(error) => Failure::input(error),
         ExportError::Write(error) => error.into(),
         ExportError::Rollout(error) => error.into(),
         error => Failure::input(error),
     })?;
-    Ok(output::print(&report::exported(source.spec(), &out, &files))?)
+    Ok(output::print(&report::exported(source.spec(), &out, &files, &left_out))?)
 }

@@ -8,6 +8,7 @@ mod controller;
 mod deployed;
 mod folder;
 mod meaning;
+mod mechanism;
 mod model;
 mod onnx;
 mod samples;
@@ -16,11 +17,15 @@ use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use hwasp_core::RolloutError;
+use hwasp_tasks::hand::HandError;
 use thiserror::Error;
 
+use self::contract::Contract;
 use self::deployed::Deployed;
+use self::mechanism::Mechanism;
 use crate::assemble::AssembleError;
-use crate::run_folder::{RunError, SavedRun, saved_spec};
+use crate::design::DesignReport;
+use crate::run_folder::{DESIGN, RunError, SavedRun, saved_spec};
 use crate::spec::Spec;
 
 /// The most random observations that are written: files of some hundred MB.
@@ -35,23 +40,53 @@ pub enum Kind {
     Safetensors,
     /// The controller's numbers as JSON.
     Json,
+    /// The hand and its task as a `MuJoCo` model, with native tendons and springs.
+    Mjcf,
+    /// The hand's links and joints as URDF.
+    Urdf,
+    /// Its printed parts as STL.
+    Stl,
+    /// The same as an `OpenSCAD` file, with the parameters at its top.
+    Scad,
 }
 
 impl Kind {
-    /// All of them: what is exported if nothing is asked for.
-    pub const ALL: [Self; 3] = [Self::Onnx, Self::Safetensors, Self::Json];
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Onnx, Self::Safetensors, Self::Json, Self::Mjcf, Self::Urdf, Self::Stl, Self::Scad];
+
+    /// Its name, as the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Onnx => "onnx",
+            Self::Safetensors => "safetensors",
+            Self::Json => "json",
+            Self::Mjcf => "mjcf",
+            Self::Urdf => "urdf",
+            Self::Stl => "stl",
+            Self::Scad => "scad",
+        }
+    }
+
+    /// Whether a run of this experiment has it: only hands have a mechanism to be written.
+    pub fn is_of(self, spec: &Spec) -> bool {
+        let of_mechanism = matches!(self, Self::Mjcf | Self::Urdf | Self::Stl | Self::Scad);
+        !of_mechanism || mechanism::hand(spec).is_some()
+    }
 
     /// The files of this kind. Every form of the controller has the contract beside it.
     fn files(self, source: &Source) -> Result<Vec<ExportFile>, ExportError> {
-        let deployed = source.deployed()?;
-        let contract = contract::Contract::new(deployed);
-        let mut files = match self {
-            Self::Onnx => onnx::models(deployed, &contract)?,
-            Self::Safetensors => vec![controller::safetensors(deployed, &contract)?],
-            Self::Json => vec![controller::json(deployed, &contract)?],
-        };
-        files.push(contract.file()?);
-        Ok(files)
+        match self {
+            Self::Onnx => source.with_contract(onnx::models),
+            Self::Safetensors => {
+                source.with_contract(|deployed, contract| Ok(vec![controller::safetensors(deployed, contract)?]))
+            }
+            Self::Json => source.with_contract(|deployed, contract| Ok(vec![controller::json(deployed, contract)?])),
+            Self::Mjcf => Ok(source.mechanism(self)?.mjcf()?),
+            Self::Urdf => Ok(source.mechanism(self)?.urdf()?),
+            Self::Stl => Ok(source.mechanism(self)?.stl()?),
+            Self::Scad => Ok(source.mechanism(self)?.scad()?),
+        }
     }
 }
 
@@ -79,6 +114,19 @@ pub enum ExportError {
     /// No episode from which states could be taken for samples.
     #[error(transparent)]
     Rollout(#[from] RolloutError),
+    /// A form of the mechanism of a run without one.
+    #[error(
+        "{problem} has no mechanism to write as {kind}: mjcf, urdf, stl and scad are for the hand, in z-grasp and 3d-grasp"
+    )]
+    NoMechanism {
+        /// The form.
+        kind: &'static str,
+        /// The problem.
+        problem: &'static str,
+    },
+    /// A hand that cannot be built.
+    #[error(transparent)]
+    Hand(#[from] HandError),
     /// Something else is where a file should go.
     #[error("{path} exists already, no export wrote it, and it is not overwritten; name another folder with --out")]
     Foreign {
@@ -125,6 +173,31 @@ impl Source {
         let params = saved.params()?;
         let deployed = Deployed::new(saved.assembly(), &params)?;
         Ok(self.deployed.get_or_init(|| deployed))
+    }
+
+    /// Files of the controller, and its contract.
+    fn with_contract(
+        &self,
+        make: impl FnOnce(&Deployed, &Contract) -> Result<Vec<ExportFile>, ExportError>,
+    ) -> Result<Vec<ExportFile>, ExportError> {
+        let deployed = self.deployed()?;
+        let contract = Contract::new(deployed);
+        let mut files = make(deployed, &contract)?;
+        files.push(contract.file()?);
+        Ok(files)
+    }
+
+    /// The mechanism, to be written as `kind`.
+    fn mechanism(&self, kind: Kind) -> Result<Mechanism, ExportError> {
+        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.kind().name() };
+        let hand = mechanism::hand(&self.spec).ok_or_else(none)?;
+        if !self.path.join(DESIGN).is_file() {
+            // Of a training that did not come to its end.
+            return Ok(Mechanism::new(hand, &self.deployed()?.design));
+        }
+        let design: Vec<f64> =
+            DesignReport::open(&self.path)?.groups.into_iter().flat_map(|group| group.group.as_built).collect();
+        Ok(Mechanism::new(hand, &design))
     }
 }
 

@@ -4,7 +4,7 @@ use hwasp_core::{CommandPort, Dimension, EnvSpec, Outcome, Port, Stream, Task};
 use rand::RngExt;
 
 use super::object::Object;
-use super::plant::{GraspPlant, SUBSTEPS};
+use super::plant::GraspPlant;
 use super::settings::{GraspSettings, Viewpoint};
 use hwasp_tasks::hand::names;
 
@@ -83,8 +83,8 @@ impl Task for GraspTask {
         let palm = self.settings.palm.commands().iter();
         let mut command: Vec<CommandPort> = palm.map(|name| motor(name, self.settings.palm_step)).collect();
         command.push(motor("motor", self.settings.hand.transmission.step_limit));
-        let time_step = SUBSTEPS as f64 * self.settings.hand.time_step;
-        EnvSpec { observation, state, effort, command, horizon: self.settings.horizon, time_step }
+        let (horizon, time_step) = (self.settings.horizon, self.settings.hand.step_time());
+        EnvSpec { observation, state, effort, command, horizon, time_step }
     }
 
     fn set_progress(&mut self, progress: f64) {

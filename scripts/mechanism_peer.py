@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Loads the exported mechanism of a run with the programs of others: MuJoCo, URDF readers, trimesh and OpenSCAD. Python 3.11 or
+newer; needs the network.
+
+    cargo build --release
+    python3 scripts/mechanism_peer.py                     # results/z-grasp
+    python3 scripts/mechanism_peer.py runs/another-hand
+
+MuJoCo, yourdfpy, urdf_parser_py and trimesh are installed into a virtual environment in a temporary folder. OpenSCAD is used
+where it is installed (`apt install openscad`). Any warning is an error.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release" / "hwasp"
+PINNED = ["mujoco==3.17.0", "yourdfpy==0.0.60", "urdf_parser_py==0.0.4", "trimesh==5.2.0"]
+
+# Runs inside the environment, with the folder of the export and the run's design.toml.
+INSIDE = """
+import itertools, sys, tomllib, warnings
+from pathlib import Path
+import mujoco, numpy, trimesh, yourdfpy
+from urdf_parser_py import urdf as urdf_parser, xml_reflection
+
+folder, design_file = Path(sys.argv[1]), Path(sys.argv[2])
+warnings.simplefilter("error")
+# What yourdfpy is told by trimesh is not about our files.
+warnings.simplefilter("ignore", DeprecationWarning)
+
+
+def refuse(message):
+    raise AssertionError(message)
+
+
+mujoco.set_mju_user_warning(refuse)
+xml_reflection.core.on_error = refuse
+
+KINDS = ["thumb_proximal", "thumb_distal", "finger_proximal", "finger_distal"]
+JOINTS = [f"{digit}_{link}" for digit in ("thumb", "finger1", "finger2") for link in ("proximal", "distal")]
+KIND = dict(zip(JOINTS, (0, 1, 2, 3, 2, 3)))
+design = tomllib.loads(design_file.read_text())
+radius, stiffness, preload = (
+    [design[f"{kind}_{what}"]["as_built"][0] for kind in KINDS] for what in ("radius", "stiffness", "preload")
+)
+random = numpy.random.default_rng(7)
+
+
+def close(what, ours, theirs, tolerance):
+    off = float(numpy.abs(numpy.asarray(ours) - numpy.asarray(theirs)).max())
+    assert off <= tolerance, f"{what}: {ours} is not {theirs}"
+    return off
+
+
+# The model, as the engine's own tools read it.
+model = mujoco.MjModel.from_xml_path(str(folder / "hand.xml"))
+data = mujoco.MjData(model)
+assert (model.nq, model.nv, model.nu, model.ntendon) == (16, 15, 6, 3), (model.nq, model.nv, model.nu, model.ntendon)
+for joint in JOINTS:
+    address, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
+    close(f"stiffness of {joint}", model.jnt_stiffness[model.joint(joint).id], stiffness[KIND[joint]], 1e-12)
+    close(f"preload of {joint}", model.qpos_spring[address], -preload[KIND[joint]], 1e-12)
+worst = 0.0
+for _ in range(100):
+    angles = random.uniform(0, 1.57, 6)
+    for joint, angle in zip(JOINTS, angles):
+        data.joint(joint).qpos[0] = angle
+    mujoco.mj_forward(model, data)
+    wound = [sum(radius[KIND[j]] * a for j, a in zip(JOINTS[d : d + 2], angles[d : d + 2])) for d in (0, 2, 4)]
+    worst = max(worst, close("tendon lengths", data.ten_length, wound, 1e-12))
+mujoco.mj_resetDataKeyframe(model, data, 0)
+for step in range(3000):
+    data.ctrl[3:] = min(model.numeric("travel").data[0], 1e-5 * step)
+    mujoco.mj_step(model, data)
+assert all(warning.number == 0 for warning in data.warning), "the engine warns of a state"
+bodies = [model.body(name) for name in ["palm", *(f"{joint}_link" for joint in JOINTS)]]
+mass = sum(float(body.mass[0]) for body in bodies)
+print(f"MuJoCo {mujoco.__version__}: hand.xml has nq {model.nq}, {model.ntendon} tendons, a hand of {1e3 * mass:.1f} g;")
+print(f"  tendon lengths at 100 poses are those of the design to {worst:.0e} m; 3 s of winding without a warning")
+
+# Links and joints.
+strict = urdf_parser.URDF.from_xml_string((folder / "hand.urdf").read_bytes())
+strict.check_valid()
+robot = yourdfpy.URDF.load(str(folder / "hand.urdf"), build_collision_scene_graph=True)
+assert robot.validate() and not robot.errors, robot.errors
+assert set(robot.actuated_joint_names) == set(JOINTS)
+compiled = mujoco.MjModel.from_xml_path(str(folder / "hand.urdf"))
+assert compiled.nq == 6, compiled.nq
+total = 0.0
+for body in bodies:
+    inertial = robot.link_map[body.name].inertial
+    moments = numpy.diag(inertial.inertia)
+    assert (inertial.inertia == numpy.diag(moments)).all() and moments.min() > 0 and 2 * moments.max() <= moments.sum()
+    total += inertial.mass
+    # MuJoCo sorts principal moments.
+    close(f"moments of {body.name}", sorted(moments), sorted(body.inertia), 1e-18)
+    close(f"mass of {body.name}", inertial.mass, body.mass[0], 0)
+    close(f"centre of {body.name}", inertial.origin[:3, 3], body.ipos, 1e-15)
+close("mass", total, mass, 1e-12)
+worst = 0.0
+for _ in range(100):
+    angles = random.uniform(0, 1.57, 6)
+    for joint, angle in zip(JOINTS, angles):
+        data.joint(joint).qpos[0] = angle
+    mujoco.mj_kinematics(model, data)
+    robot.update_cfg(dict(zip(JOINTS, angles)))
+    for body in bodies:
+        place = robot.get_transform(body.name, "base")
+        worst = max(worst, close(body.name, place[:3, 3], data.body(body.id).xpos - data.body("palm").xpos, 1e-12))
+        worst = max(worst, close(body.name, place[:3, :3].ravel(), data.body(body.id).xmat, 1e-12))
+print(f"yourdfpy {yourdfpy.__version__}, urdf_parser_py and MuJoCo take hand.urdf; its frames at 100 poses, masses and inertias")
+print(f"  are those of hand.xml (frames to {worst:.0e})")
+
+# Parts to print.
+parts = {}
+for file in sorted(folder.glob("*.stl")):
+    mesh = trimesh.load_mesh(file)
+    assert mesh.is_watertight and mesh.is_winding_consistent and mesh.is_volume and mesh.body_count == 1, file.name
+    assert mesh.nondegenerate_faces().all() and (mesh.edges_sorted.shape[0] == 2 * len(mesh.edges_unique)), file.name
+    parts[file.stem] = mesh
+    low, high = mesh.bounds
+    size = " x ".join(f"{s:.1f}" for s in high - low)
+    print(f"  {file.name:<27} {size:>20} mm {1e-3 * mesh.volume:>8.2f} cm3 {len(mesh.faces):>6} triangles {file.stat().st_size / 1e3:>6.1f} kB")
+used = {visual.geometry.mesh.filename for link in robot.robot.links for visual in link.visuals}
+assert used == {f"{name}.stl" for name in parts} and len(parts) == 9, sorted(parts)
+worst = 0.0
+for kind, name in enumerate(KINDS):
+    link = parts[f"{name}_link"]
+    length = (50, 40)[kind % 2]
+    close(f"{name}_link", link.bounds, [[-11, -12, -12], [11, 12, length + 12]], 0.01)
+    # Half of the line's 0.6 mm below its centre; corners in a groove, which holes of the flange touch, on the other side.
+    corners = parts[f"{name}_pulley"].vertices
+    corners = corners[numpy.isclose(corners[:, 0], 0.8)]
+    away = numpy.hypot(corners[:, 1], corners[:, 2])
+    bottom = away[away > 1e3 * radius[kind] - 0.6].min()
+    worst = max(worst, close(f"groove of {name}", bottom + 0.3, 1e3 * radius[kind], 0.005))
+print(f"trimesh {trimesh.__version__}: all nine watertight; the line runs at the radii of the design to {1e3 * worst:.1f} um")
+
+# Parts that are joined, and the pulleys in them, at 25 poses.
+placed = [(link.name, v.geometry.mesh.filename[:-4]) for link in robot.robot.links for v in link.visuals]
+neighbours = {frozenset((joint.parent, joint.child)) for joint in robot.robot.joints}
+pairs = [
+    pair for pair in itertools.combinations(placed, 2)
+    if pair[0][0] == pair[1][0] or frozenset((pair[0][0], pair[1][0])) in neighbours
+]
+largest = 0.0
+for proximal, distal in itertools.product(numpy.linspace(0, 1.57, 5), repeat=2):
+    robot.update_cfg({joint: proximal if joint.endswith("proximal") else distal for joint in JOINTS})
+
+    def at(link, part):
+        place = robot.get_transform(link, "base").copy()
+        place[:3, 3] *= 1e3
+        return parts[part].copy().apply_transform(place)
+
+    for one, other in pairs:
+        common = trimesh.boolean.intersection([at(*one), at(*other)], engine="manifold")
+        volume = abs(common.volume) if len(common.faces) else 0.0
+        assert volume < 1e-3, f"{one} and {other} share {volume} mm3 at {proximal}, {distal} rad"
+        largest = max(largest, volume)
+print(f"  {len(pairs)} pairs of joined parts at 25 poses: the most that two share is {largest:.0e} mm3")
+"""
+
+# Compares a part of OpenSCAD's with ours.
+SCAD = """
+import sys, numpy, trimesh
+ours, theirs = (trimesh.load_mesh(path) for path in sys.argv[1:])
+assert theirs.is_watertight, sys.argv[2]
+assert abs(theirs.volume / ours.volume - 1) < 1e-5, f"{sys.argv[1]}: {ours.volume} mm3, OpenSCAD {theirs.volume} mm3"
+assert numpy.abs(ours.bounds - theirs.bounds).max() < 1e-3, f"{sys.argv[1]}: {ours.bounds}, OpenSCAD {theirs.bounds}"
+print(abs(theirs.volume / ours.volume - 1))
+"""
+
+
+def openscad(python, folder):
+    """Every part by OpenSCAD; the largest relative difference of volumes."""
+    largest = 0.0
+    for ours in sorted(folder.glob("*.stl")):
+        theirs = folder / f"openscad-{ours.name}"
+        command = ["openscad", "-o", theirs, "-D", f'part="{ours.stem}"', folder / "hand.scad"]
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+        if "WARNING" in said or "ERROR" in said:
+            sys.exit(said)
+        off = subprocess.run([python, "-c", SCAD, ours, theirs], check=True, capture_output=True, text=True).stdout
+        largest = max(largest, float(off))
+    return largest
+
+
+def main():
+    run = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results" / "z-grasp"
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "venv", f"{folder}/venv"], check=True)
+        python = f"{folder}/venv/bin/python"
+        subprocess.run([python, "-m", "pip", "install", "--quiet", *PINNED], check=True)
+        out = Path(folder) / "export"
+        command = [PROGRAM, "export", run, "--mjcf", "--urdf", "--stl", "--scad", "--out", out]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        if subprocess.run([python, "-c", INSIDE, out, run / "design.toml"]).returncode:
+            sys.exit(f"the mechanism of {run} is not sound")
+        if shutil.which("openscad"):
+            print(f"OpenSCAD makes the same parts of hand.scad: volumes to {openscad(python, out):.0e}")
+        else:
+            print("SKIPPED OpenSCAD: it is not installed")
+
+
+if __name__ == "__main__":
+    main()

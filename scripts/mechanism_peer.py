@@ -130,8 +130,9 @@ assert used == {f"{name}.stl" for name in parts} and len(parts) == 9, sorted(par
 worst = 0.0
 for kind, name in enumerate(KINDS):
     link = parts[f"{name}_link"]
-    length = (50, 40)[kind % 2]
-    close(f"{name}_link", link.bounds, [[-11, -12, -12], [11, 12, length + 12]], 0.01)
+    # To the stop in the fork, to the tip.
+    end = (50 + 13.2, 40 + 12)[kind % 2]
+    close(f"{name}_link", link.bounds, [[-11, -12, -12], [11, 12, end]], 0.01)
     # Half of the line's 0.6 mm below its centre; corners in a groove, which holes of the flange touch, on the other side.
     corners = parts[f"{name}_pulley"].vertices
     corners = corners[numpy.isclose(corners[:, 0], 0.8)]
@@ -147,21 +148,33 @@ pairs = [
     pair for pair in itertools.combinations(placed, 2)
     if pair[0][0] == pair[1][0] or frozenset((pair[0][0], pair[1][0])) in neighbours
 ]
+
+
+# The volume that two parts have in common, mm3.
+def shared(one, other):
+    both = []
+    for link, part in (one, other):
+        place = robot.get_transform(link, "base").copy()
+        place[:3, 3] *= 1e3
+        both.append(parts[part].copy().apply_transform(place))
+    corners = trimesh.boolean.intersection(both, engine="manifold").triangles
+    return abs(float(numpy.einsum("ij,ij->", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])))) / 6
+
+
 largest = 0.0
 for proximal, distal in itertools.product(numpy.linspace(0, 1.57, 5), repeat=2):
     robot.update_cfg({joint: proximal if joint.endswith("proximal") else distal for joint in JOINTS})
-
-    def at(link, part):
-        place = robot.get_transform(link, "base").copy()
-        place[:3, 3] *= 1e3
-        return parts[part].copy().apply_transform(place)
-
-    for one, other in pairs:
-        common = trimesh.boolean.intersection([at(*one), at(*other)], engine="manifold")
-        volume = abs(common.volume) if len(common.faces) else 0.0
-        assert volume < 1e-3, f"{one} and {other} share {volume} mm3 at {proximal}, {distal} rad"
+    for pair in pairs:
+        volume = shared(*pair)
+        assert volume < 1e-3, f"{pair} share {volume} mm3 at {proximal}, {distal} rad"
         largest = max(largest, volume)
-print(f"  {len(pairs)} pairs of joined parts at 25 poses: the most that two share is {largest:.0e} mm3")
+# A little before the open hand every link is inside of its stop.
+robot.update_cfg({joint: numpy.float64(-0.002) for joint in JOINTS})
+for joint in robot.robot.joints:
+    if joint.name in JOINTS:
+        one, other = ((link, "palm" if link == "palm" else link.replace("1", "").replace("2", "")) for link in (joint.parent, joint.child))
+        assert 0.1 < shared(one, other) < 2, f"{joint.name} has no stop: {shared(one, other)} mm3"
+print(f"  {len(pairs)} pairs of joined parts at 25 poses: the most that two share is {largest:.0e} mm3; every stop holds at 0 rad")
 """
 
 # Compares a part of OpenSCAD's with ours.

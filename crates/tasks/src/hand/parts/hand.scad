@@ -27,6 +27,8 @@ function setback(link) = max(rim(link), link) + 1.5 * clearance;
 function fixed_leg(p) = leg_circle * [sin(deg(p)), cos(deg(p))];
 // From a proximal joint to the end of its pocket, where the link stands tilted from straight down.
 function reach(tilt) = max(link_radius[0], link_radius[2]) / cos(deg(tilt)) + 2.5 * clearance;
+// What the open link leans on, in its frame.
+function stop(link) = [[0, 0], [link - frame / 2, 0], [link - frame / 2, setback(link)], [frame, setback(link)]];
 function deg(angle) = angle * 180 / PI;
 function distal(kind) = kind % 2 == 1;
 
@@ -83,6 +85,7 @@ module link(kind) {
                 slot(0, length, r);
                 strip(from, far);
             }
+            if (!distal(kind)) slices(cheek_from, half_width) translate([0, length]) polygon(stop(link_radius[kind + 1]));
         }
         slice(-far, far) slot(from + frame + inner, to - frame - inner, inner);
         slices(prong_from, prong_to) disc(bore);
@@ -116,11 +119,20 @@ module palm() {
         union() {
             slice(-palm_half_size[0], palm_half_size[0])
                 translate([-palm_half_size[1], 0]) square(2 * [palm_half_size[1], palm_half_size[2]]);
-            for (at = base) translate([at[0], 0, 0]) slices(cheek_from, half_width) disc(lug, [at[1], 0]);
+            for (digit = [0:2]) translate([base[digit][0], 0, 0]) slices(cheek_from, half_width) {
+                disc(lug, [base[digit][1], 0]);
+                polygon([for (corner = stop(link_radius[digit == 0 ? 0 : 2])) placed(digit, corner)]);
+            }
         }
         for (digit = [0:2]) translate([base[digit][0], 0, 0]) digit_room(digit);
     }
 }
+
+// From the frame of an open link to that of the palm, in y and z.
+function placed(digit, p) = [
+    base[digit][1] + sign(base[digit][1]) * (cos(deg(rest_angle)) * p[0] + sin(deg(rest_angle)) * p[1]),
+    sin(deg(rest_angle)) * p[0] - cos(deg(rest_angle)) * p[1],
+];
 
 // What the palm leaves free for a digit.
 module digit_room(digit) {
@@ -129,18 +141,14 @@ module digit_room(digit) {
     kind = digit == 0 ? 0 : 2;
     open = y + outward * reach(rest_angle);
     closed = y - outward * reach(closed_angle - rest_angle);
-    leg = fixed_leg(preload[kind]);
-    leg_at = [
-        y + outward * (cos(deg(rest_angle)) * leg[0] + sin(deg(rest_angle)) * leg[1]),
-        sin(deg(rest_angle)) * leg[0] - cos(deg(rest_angle)) * leg[1],
-    ];
     slice(-cheek_from, cheek_from) translate([min(open, closed), -lug])
         square([abs(open - closed), lug + setback(link_radius[kind])]);
     slice(-channel, channel) translate([y - outward * radius[kind] - channel, 0])
         square([2 * channel, 2 * palm_half_size[2] + channel]);
     slices(cheek_from, half_width) disc(bore, [y, 0]);
     // The link's x axis points along -x for digits that open along y.
-    mirror([outward > 0 ? 1 : 0, 0, 0]) slice(cheek_from, half_width) disc(leg_hole, leg_at);
+    mirror([outward > 0 ? 1 : 0, 0, 0]) slice(cheek_from, half_width)
+        disc(leg_hole, placed(digit, fixed_leg(preload[kind])));
 }
 
 module digit(digit) {

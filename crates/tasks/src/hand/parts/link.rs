@@ -28,8 +28,10 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: 
 
     let heights = [stock.channel(), prong, stock.pocket(), prong_end, cheek, stock.half_width()];
     let heights = heights.into_iter().flat_map(|height| [-height, height]).collect();
+    let leaning = stop(digit.distal.radius, stock).map(|[y, z]| [y, length + z]);
     between(heights, |x| {
         let away = x.abs();
+        let mut add = vec![slot(0.0, [0.0, length], radius)];
         let in_prong = (prong..prong_end).contains(&away);
         let mut cut = vec![window.clone()];
         if !in_prong {
@@ -57,13 +59,14 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: 
             }
         }
         if !distal && away > cheek {
+            add.push(polygon(&leaning));
             cut.push(disc(tip, stock.bore()));
             if x > 0.0 {
                 let [y, z] = fixed_leg(design[8 + kind + 1], stock);
                 cut.push(disc([y, length + z], stock.leg_hole()));
             }
         }
-        (vec![slot(0.0, [0.0, length], radius)], cut)
+        (add, cut)
     })
 }
 
@@ -72,6 +75,13 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: 
 pub(super) fn fixed_leg(preload: f64, stock: &Stock) -> [f64; 2] {
     let (sin, cos) = (std::f64::consts::FRAC_PI_2 - preload).sin_cos();
     [stock.leg_circle() * cos, stock.leg_circle() * sin]
+}
+
+/// The stop of the open hand, in the frame of the open link: a part of both cheeks on which the whole width of that link leans,
+/// away from the closing side.
+pub(super) fn stop(radius: f64, stock: &Stock) -> [[f64; 2]; 4] {
+    let (out, up) = (radius - 0.5 * FRAME, stock.setback(radius));
+    [[0.0, 0.0], [out, 0.0], [out, up], [FRAME, up]]
 }
 
 /// The line's way from the proximal pulley to the distal one: along the tangent on the closing side. Where less than two walls are

@@ -1,9 +1,9 @@
 //! The palm: its box, with a pocket and two lugs for each digit, and a way for its line.
 
 use super::super::description::{FingerDescription, HandDescription};
-use super::super::solid::{Layer, Outline, disc, rectangle};
+use super::super::solid::{Layer, Outline, disc, polygon, rectangle};
 use super::super::space::DESIGN_LEN;
-use super::link::fixed_leg;
+use super::link::{fixed_leg, stop};
 use super::{Stock, between};
 
 pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -> Vec<Layer> {
@@ -27,14 +27,15 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: 
                 cut.push(pocket(digit, hand, stock));
             } else if away < stock.half_width() {
                 let centre = [digit.base[1], 0.0];
+                let (sin, cos) = hand.joint.rest_angle.sin_cos();
+                // From the frame of the open link.
+                let placed = |[y, z]: [f64; 2]| [centre[0] + outward * (cos * y + sin * z), sin * y - cos * z];
                 add.push(disc(centre, stock.lug()));
+                add.push(polygon(&stop(digit.proximal.radius, stock).map(placed)));
                 cut.push(disc(centre, stock.bore()));
                 // The link's x axis points along -x for digits that open along y.
                 if from_digit * outward < 0.0 {
-                    let [y, z] = fixed_leg(design[8 + kind], stock);
-                    let (sin, cos) = hand.joint.rest_angle.sin_cos();
-                    let leg = [centre[0] + outward * (cos * y + sin * z), sin * y - cos * z];
-                    cut.push(disc(leg, stock.leg_hole()));
+                    cut.push(disc(placed(fixed_leg(design[8 + kind], stock)), stock.leg_hole()));
                 }
             }
         }

@@ -58,6 +58,7 @@ pub(super) const CASES: &[Case] = &[
     case("A drawing in an unknown format", Nothing, "hwasp graph reach --out law.pdf"),
     case("A drawing in no format", Nothing, "hwasp graph reach --out law"),
     case("An export of no samples", Made(Sandbox::put_run), "hwasp export run --samples 0"),
+    case("Printed parts of what has none", Made(Sandbox::put_run), "hwasp export run --json --stl"),
     case("Films of what grasps nothing", Made(Sandbox::put_run), "hwasp play run"),
     case("Tendons of what has none", Made(Sandbox::put_run), "hwasp eval run --native-tendons"),
     case("A closing chart of what is no hand", Made(Sandbox::put_run), "hwasp design run --out pictures"),

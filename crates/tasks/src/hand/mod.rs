@@ -15,6 +15,8 @@
 //! [`TendonHand`] law, which stands between the motor and the joints, or the tendons of [`mjcf`] with [`Drive::NativeTendon`].
 //! [`FreeClosing`], [`droop`], [`pinch_band`] and [`PinchLift`] say of a design what can be said without a simulation.
 //!
+//! [`urdf`] has its links and joints, [`parts`] and [`scad`] what to print.
+//!
 //! Nothing here needs the engine.
 //!
 //! ```

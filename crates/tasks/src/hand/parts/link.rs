@@ -1,4 +1,4 @@
-//! Links: what touches objects is the outline of the capsule, 22 mm wide with the default stock.
+//! Links: seen along the shaft they have the outline of their capsule; with the default stock they are 22 mm wide.
 
 use super::super::description::HandDescription;
 use super::super::solid::{Layer, disc, polygon, rectangle, slot};

@@ -1,13 +1,13 @@
 //! The hand's links, pulleys and palm as solids to print, about what is bought: line, shafts and springs.
 //!
 //! ```text
-//!   a joint from the closing side, its shaft along x           seen along the shaft, the link straight
+//!   a joint from the closing side, the shaft along x
 //!
-//!     cheek │ prong │pulley│ prong │ cheek                            ___________
-//!    ┌────┐ ┌─────┐ ┌──┬──┐ ┌─────┐ ┌────┐                    y ▲    /  parent   \
-//!    │    │ │     │ │  │  │ │ ┌───┤ │    │                      │   (      ⊙      )   shaft: the origin of the
-//!  ══╪════╪═╪═════╪═╪══╪══╪═╪═╪═══╪═╪════╪══ shaft, x ▶         └─▶ z  ▔▔▔▔▔▔▔▔▔▔▔▔▔▔  link's frame
-//!    │    │ │     │ │  │  │ │ └───┤ │    │                         line, radius r from the shaft
+//!     cheek │ prong │pulley│ prong │ cheek
+//!    ┌────┐ ┌─────┐ ┌──┬──┐ ┌─────┐ ┌────┐
+//!    │    │ │     │ │  │  │ │ ┌───┤ │    │
+//!  ══╪════╪═╪═════╪═╪══╪══╪═╪═╪═══╪═╪════╪══▶ x
+//!    │    │ │     │ │  │  │ │ └───┤ │    │
 //!    └────┘ └─────┘ └──┴──┘ └─────┘ └────┘
 //!                    groove   spring
 //! ```
@@ -16,6 +16,8 @@
 //! spring sits in a pocket of the prong on the side of positive x, one leg in that prong and one in the cheek. The hole in
 //! the cheek is turned by the preload against the one in the prong, so that a spring whose legs are parallel when it is free
 //! has the preload of the design with the hand open.
+//!
+//! With the hand open the link leans on both cheeks.
 //!
 //! The proximal pulley turns freely and carries a full turn of line, so that the line stays on it at every angle. The distal
 //! one is pinned to its link, and the line ends in it.

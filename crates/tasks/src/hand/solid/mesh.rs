@@ -104,11 +104,13 @@ impl Mesh {
         if volume > 0.0 { Ok(()) } else { Err(MeshError::InsideOut { volume }) }
     }
 
-    /// The mesh as a binary STL file in millimetres. `name` (ASCII, at most 60 bytes are kept) goes into its header.
+    /// The mesh as a binary STL file in millimetres. `name` goes into its header of 80 bytes; readers take one that
+    /// begins with `solid` for text.
     pub fn stl(&self, name: &str) -> Vec<u8> {
         let mut bytes = vec![b' '; 80];
-        let title = format!("{name:.60}, millimetres");
-        bytes[..title.len()].copy_from_slice(title.as_bytes());
+        for (place, letter) in bytes.iter_mut().zip(format!("{name}, millimetres").bytes()) {
+            *place = letter;
+        }
         bytes.extend((self.triangles.len() as u32).to_le_bytes());
         for corners in self.triangles() {
             let direction = normal(corners);

@@ -3,11 +3,12 @@
 //! Episodes of one index begin alike and meet the same noise whatever acts in them (common random numbers), so that the
 //! difference of two of them varies far less than either.
 
-use hwasp_core::{Batch, Stream};
+use hwasp_core::{Batch, Executor, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
-use crate::evaluate::{MeanInterval, mean_interval};
+use crate::assemble::Assembly;
+use crate::evaluate::{EvaluateError, Evaluation, MeanInterval, mean_interval, rollouts};
 use crate::stats::StatsError;
 
 /// What changed between two evaluations on the same episodes: means of the differences, episode by episode, with their 95 %
@@ -24,15 +25,56 @@ pub struct Change {
     pub success: Option<MeanInterval>,
 }
 
+/// An evaluation that others are held against, in the world where the result has to work.
+pub(crate) struct Reference<'a> {
+    assembly: &'a Assembly,
+    /// Episodes and the root seed of their starts.
+    asked: (u64, u64),
+    executor: &'a dyn Executor,
+    pub(crate) evaluation: Evaluation,
+    trials: Vec<Option<Trial>>,
+}
+
+impl<'a> Reference<'a> {
+    /// The controller in `params` on the hardware of `design`, SI.
+    pub(crate) fn new(
+        assembly: &'a Assembly,
+        design: &[f64],
+        params: &[f32],
+        asked: (u64, u64),
+        executor: &'a dyn Executor,
+    ) -> Result<Self, EvaluateError> {
+        let (evaluation, trials) = tried(assembly, design, params, asked, executor)?;
+        Ok(Self { assembly, asked, executor, evaluation, trials })
+    }
+
+    /// Another design or another controller on the same episodes, and what that changes.
+    pub(crate) fn against(&self, design: &[f64], params: &[f32]) -> Result<(Evaluation, Change), EvaluateError> {
+        let (evaluation, trials) = tried(self.assembly, design, params, self.asked, self.executor)?;
+        Ok((evaluation, Change::between(&self.trials, &trials, self.asked.1)?))
+    }
+}
+
+fn tried(
+    assembly: &Assembly,
+    design: &[f64],
+    params: &[f32],
+    asked: (u64, u64),
+    executor: &dyn Executor,
+) -> Result<(Evaluation, Vec<Option<Trial>>), EvaluateError> {
+    let batch = rollouts(assembly, &assembly.problem.deployment, design, params, asked, executor)?;
+    Ok((Evaluation::new(&batch, assembly.spec().discount(), asked)?, trials(&batch, asked.0)))
+}
+
 /// How one episode went.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Trial {
+struct Trial {
     undiscounted_return: f64,
     success: Option<bool>,
 }
 
 /// The episodes by index; none where the physics failed.
-pub(crate) fn trials(batch: &Batch, asked: u64) -> Vec<Option<Trial>> {
+fn trials(batch: &Batch, asked: u64) -> Vec<Option<Trial>> {
     let mut done = batch.returns(1.0).into_iter().zip(&batch.episodes).map(|(undiscounted_return, episode)| Trial {
         undiscounted_return,
         success: episode.outcome.map(|outcome| outcome.success),
@@ -43,7 +85,7 @@ pub(crate) fn trials(batch: &Batch, asked: u64) -> Vec<Option<Trial>> {
 
 impl Change {
     /// From some trials to others of the same episodes; `seed` names the resamples.
-    pub(crate) fn between(before: &[Option<Trial>], after: &[Option<Trial>], seed: u64) -> Result<Self, StatsError> {
+    fn between(before: &[Option<Trial>], after: &[Option<Trial>], seed: u64) -> Result<Self, StatsError> {
         let pairs: Vec<(Trial, Trial)> = before.iter().zip(after).filter_map(|(b, a)| b.zip(*a)).collect();
         let mut stream = Stream::seed_from_u64(seed);
         let returns: Vec<f64> = pairs.iter().map(|(b, a)| a.undiscounted_return - b.undiscounted_return).collect();

@@ -138,6 +138,14 @@ pub fn train_from(
 }
 
 impl Assembly {
+    /// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
+    ///
+    /// # Errors
+    /// Where a parameter is no number.
+    pub fn beginning(&self, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
+        Ok(Gradient::beginning(self, params).checkpoint()?)
+    }
+
     /// The parameters that a training had come to: the learner's, or the best of a search.
     pub fn params_at(&self, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
         let archive = &checkpoint.archive;

@@ -94,7 +94,7 @@ pub struct Snapped {
 pub fn snap(assembly: &Assembly, params: &[f32], catalogue: &Catalogue, bench: &Bench) -> Result<Snapped, PartsError> {
     let hand = hand(assembly)?;
     let space = assembly.policy.space();
-    let design = assembly.problem.training.law.as_built(&assembly.policy.design(params));
+    let design = assembly.built(params);
     let trained = std::array::from_fn(|i| design[i]);
     let limits = std::array::from_fn(|i| space.bounds(i));
     let joints = select(&hand, &trained, &limits, catalogue, bench)?;

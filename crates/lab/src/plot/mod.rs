@@ -4,7 +4,7 @@
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
 //! smoothed. The picture is SVG text; a PNG is that same SVG drawn with an embedded font.
 //!
-//! [`closing_plot`] draws the closing chart of a hand with the same panels.
+//! [`closing_plot`] draws the closing chart of a hand with the same panels, [`tornado_plot`] what errors of a design's parameters do.
 
 mod axis;
 mod closing;
@@ -13,6 +13,7 @@ pub(crate) mod output;
 mod panel;
 mod series;
 pub(crate) mod svg;
+mod tornado;
 
 use crate::metrics::{MetricsRow, MetricsTable};
 use crate::stats::StatsError;
@@ -22,6 +23,7 @@ use thiserror::Error;
 pub use closing::closing_plot;
 pub use output::{render_png, write_plot};
 pub use series::Note;
+pub use tornado::tornado_plot;
 
 /// The column of the return, whose panel comes first.
 pub const RETURN: &str = "discounted_return";

@@ -14,7 +14,7 @@ pub(super) const MARGINS: (f64, f64, f64) = (8.0, 50.0, 46.0);
 /// From the axis to its text, if the labels of the ticks leave room for it.
 const LABEL_AT: f64 = 56.0;
 /// The size of the ticks' labels, how far they are from the axis, and the least between them and its text.
-const TICK: (f64, f64, f64) = (11.0, 7.0, 8.0);
+pub(super) const TICK: (f64, f64, f64) = (11.0, 7.0, 8.0);
 /// Room left of the baseline of the axis' text.
 const LABEL_ROOM: f64 = 18.0;
 
@@ -41,8 +41,8 @@ pub(super) const INK: &str = "#262626";
 pub(super) const GREY: &str = "#666666";
 /// Dashes of a known optimum.
 pub(super) const OPTIMUM: &str = "stroke=\"#262626\" stroke-width=\"1.1\" stroke-dasharray=\"5 3\"";
-const GRID_LINE: &str = "stroke=\"#e6e6e6\" stroke-width=\"0.8\"";
-const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
+pub(super) const GRID_LINE: &str = "stroke=\"#e6e6e6\" stroke-width=\"0.8\"";
+pub(super) const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
 
 /// Okabe and Ito's palette without its yellow, told apart by every common kind of colour vision.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];

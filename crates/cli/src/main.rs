@@ -24,6 +24,8 @@ fn main() -> ExitCode {
         Command::Train(train) => commands::train::run(train),
         Command::Eval(eval) => commands::eval::run(eval),
         Command::Design(design) => commands::design::run(design),
+        Command::Parts(parts) => commands::parts::run(parts),
+        Command::Tolerances(tolerances) => commands::tolerances::run(tolerances),
         Command::Replay(replay) => commands::replay::run(replay),
         Command::Play(play) => commands::play::run(play),
         Command::Plot(plot) => commands::plot::run(plot),

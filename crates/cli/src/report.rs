@@ -1,6 +1,7 @@
 //! What the program says, as text.
 
 pub(crate) mod design;
+pub(crate) mod parts;
 
 use std::fmt::Write;
 use std::path::Path;

@@ -6,10 +6,12 @@ pub(crate) mod design;
 pub(crate) mod eval;
 pub(crate) mod graph;
 pub(crate) mod list;
+pub(crate) mod parts;
 pub(crate) mod play;
 pub(crate) mod plot;
 pub(crate) mod replay;
 pub(crate) mod reproduce;
+pub(crate) mod tolerances;
 pub(crate) mod train;
 
 use std::num::NonZeroUsize;

@@ -12,6 +12,7 @@ mod errors;
 mod experiments;
 mod folders;
 mod help;
+mod parts;
 mod pipes;
 mod play;
 #[cfg(unix)]

@@ -52,7 +52,7 @@ impl Tuning {
     /// Its folder: taken up where the same training is there already.
     pub fn folder(&self, path: &Path, provenance: Provenance) -> Result<TuningFolder, RunError> {
         let spec = self.assembly.spec();
-        let (folder, from) = if path.join(EXPERIMENT).is_file() {
+        let (mut folder, from) = if path.join(EXPERIMENT).is_file() {
             if saved_spec(path, &[])? != *spec {
                 return Err(RunError::Exists { path: path.to_owned() });
             }
@@ -65,7 +65,10 @@ impl Tuning {
         } else {
             (RunFolder::create(path, spec, &provenance, Keeping::default())?, None)
         };
-        Ok(TuningFolder::Open(Box::new(folder), Box::new(from.unwrap_or_else(|| self.start.clone()))))
+        let from = from.unwrap_or_else(|| self.start.clone());
+        // It begins with what no experiment file says: from the first moment on, that is in its folder.
+        folder.keep(&from)?;
+        Ok(TuningFolder::Open(Box::new(folder), Box::new(from)))
     }
 }
 

@@ -246,7 +246,7 @@ impl RunFolder {
     }
 
     /// Writes a checkpoint, and before it the rows that belong to it.
-    fn keep(&mut self, checkpoint: &Checkpoint) -> Result<(), RunError> {
+    pub(crate) fn keep(&mut self, checkpoint: &Checkpoint) -> Result<(), RunError> {
         self.stand()?;
         if let Some(table) = &mut self.table {
             table.sync(&*self.keeping.files)?;

@@ -16,6 +16,7 @@ Examples:
   hwasp train mass-spring                     train a design and its controller, into runs/
   hwasp eval runs/mass-spring-hwasp-seed0     evaluate the result on held-out starts
   hwasp plot runs/* --out curves.png          compare runs
+  hwasp report runs/mass-spring-hwasp-seed0   all of it on one page for a browser
 
 Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong, 130 if it was asked to
 stop (Ctrl-C, SIGTERM).";
@@ -84,6 +85,8 @@ pub(crate) enum Command {
     Play(PlayArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
+    /// Make the report of a run or a comparison: one HTML file for a browser or a printer, which loads nothing
+    Report(ReportArgs),
     /// Train methods against each other, several seeds each under one budget, and say which is better
     Compare(CompareArgs),
     /// Repeat a toy figure or table of the paper with the authors' settings, their numbers beside ours
@@ -364,6 +367,15 @@ pub(crate) struct PlotArgs {
     /// A line above it [default: none]
     #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReportArgs {
+    /// A run folder, as `hwasp train` writes one, or the folder of a comparison
+    pub(crate) folder: PathBuf,
+    /// The report, .html [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]

@@ -89,6 +89,7 @@ fn of_run(error: &RunError) -> Option<String> {
     };
     let parent = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
     Some(match error {
+        RunError::Nothing { .. } => "name a folder that `hwasp train` or `hwasp compare` has written to the end".into(),
         RunError::NotARun { .. } => "name a folder that `hwasp train` has written".into(),
         RunError::Unfinished { path, .. } if !path.join("summary.json").exists() => {
             format!("`hwasp train --resume {}` goes on with it", path.display())

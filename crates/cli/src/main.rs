@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Command::Replay(replay) => commands::replay::run(replay),
         Command::Play(play) => commands::play::run(play),
         Command::Plot(plot) => commands::plot::run(plot),
+        Command::Report(report) => commands::report::run(report),
         Command::Compare(compare) => commands::compare::run(compare),
         Command::Reproduce(reproduce) => commands::reproduce::run(reproduce),
         Command::Check(check) => commands::check::run(check),

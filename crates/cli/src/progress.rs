@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use hwasp_lab::metrics::MetricsRow;
+use hwasp_lab::text::{grouped, quantity};
 use hwasp_lab::{Assembly, Event, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::log::{PROGRESS, has_terminal};
-use crate::report::{grouped, quantity};
 
 /// Lines per training where there is no terminal.
 const LINES: u64 = 20;

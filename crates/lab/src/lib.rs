@@ -22,6 +22,7 @@ pub mod play;
 pub mod plot;
 mod policy_file;
 mod replay;
+pub mod report;
 mod run_folder;
 mod search;
 pub mod spec;
@@ -29,6 +30,7 @@ pub mod stats;
 mod summary;
 mod tensorboard;
 mod tensors;
+pub mod text;
 pub mod tolerances;
 mod train;
 

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use crate::assemble::{AssembleError, Assembly};
 use crate::checkpoint::Checkpoint;
+use crate::drawing::total_name;
 use crate::evaluate::{EvaluateError, Evaluation, evaluate};
 use crate::gradient::{Gradient, gradient};
 use crate::learned::{Clock, Loop};
@@ -159,6 +160,6 @@ impl Assembly {
     /// one.
     pub fn total_names(&self) -> Vec<String> {
         let groups = self.policy.space().groups().iter();
-        groups.map(|g| if g.count == 1 { g.name.clone() } else { format!("{}_total", g.name) }).collect()
+        groups.map(|g| total_name(&g.name, g.count)).collect()
     }
 }

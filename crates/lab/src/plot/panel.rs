@@ -30,10 +30,14 @@ pub(super) struct Site {
 }
 
 /// How far the text of the vertical axis is from it, for the widest label of a tick among the panels, and the room that
-/// both take.
+/// both take; without a text only the ticks'.
 pub(super) fn left_margin(panels: &[Panel]) -> (f64, f64) {
     let widest = panels.iter().map(Panel::widest_label).fold(0.0, f64::max);
-    let label_at = LABEL_AT.max(TICK.1 + widest + TICK.2);
+    let ticks = TICK.1 + widest + TICK.2;
+    if panels.iter().all(|panel| panel.text.label.is_empty()) {
+        return (ticks, ticks);
+    }
+    let label_at = LABEL_AT.max(ticks);
     (label_at, label_at + LABEL_ROOM)
 }
 
@@ -179,6 +183,9 @@ impl Frame<'_> {
         svg.line((left, bottom), (right, bottom), FRAME);
         let middle = (left + area.0 / 2.0, bottom + 35.0);
         svg.text(middle, 12.0, Anchor::Middle, INK, x_label);
+        if text.label.is_empty() {
+            return;
+        }
         let unit = if text.unit.is_empty() { String::new() } else { format!(" ({})", text.unit) };
         svg.upward_text((left - label_at, top + area.1 / 2.0), 12.0, INK, &format!("{}{unit}", text.label));
     }

@@ -17,7 +17,8 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let commands = ["train", "eval", "design", "parts", "tolerances", "play", "plot", "compare", "reproduce", "check"];
+    let commands =
+        ["train", "eval", "design", "parts", "tolerances", "play", "plot", "report", "compare", "reproduce", "check"];
     let lines = [&commands[..], &["list", "graph"]].concat();
     let lines: Vec<String> = lines.iter().map(|command| format!("{command} --help")).collect();
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();

@@ -15,6 +15,7 @@ mod help;
 mod parts;
 mod pipes;
 mod play;
+mod report;
 #[cfg(unix)]
 mod resume;
 mod runs;

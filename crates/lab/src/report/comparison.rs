@@ -134,7 +134,7 @@ fn verdict(comparison: &Comparison) -> String {
 
 fn pairs(pairs: &[Pair]) -> Markup {
     html! {
-        table {
+        table.cards {
             caption {
                 "Probability of improvement: the share of pairs of seeds in which the first method is better, ties counted half, with \
                  95 % bootstrap intervals"
@@ -146,8 +146,9 @@ fn pairs(pairs: &[Pair]) -> Markup {
             tbody {
                 @for pair in pairs {
                     tr {
-                        th scope="row" { (pair.method) } td { (pair.other) }
-                        td.n { (decimal(pair.probability, 2)) } td.n { (interval(pair.low, pair.high, 2)) }
+                        th scope="row" { (pair.method) } td data-label="against" { (pair.other) }
+                        td.n data-label="probability" { (decimal(pair.probability, 2)) }
+                        td.n data-label="interval" { (interval(pair.low, pair.high, 2)) }
                     }
                 }
             }

@@ -8,54 +8,55 @@ use super::page::Section;
 use super::run::Run;
 use super::words::{sentence, spaced};
 use crate::assemble::Assembly;
-use crate::evaluate::{held_out, sampler};
+use crate::evaluate::{EvaluateError, held_out, sampler};
 use crate::plot::trace;
-use crate::run_folder::SavedRun;
+use crate::run_folder::{RunError, SavedRun};
 
-pub(super) fn section(run: &Run) -> Section {
-    if run.design.hand.is_some() {
-        return Section { id: "episode", title: "How it grasps", body: grasps(run) };
-    }
-    let body = curves(run).unwrap_or_else(|error| failed(&*error));
-    Section { id: "episode", title: "How it moves", body }
+/// # Errors
+/// Of a policy that is missing or damaged. Where an episode cannot be run, the page says so, and the rest of it stands.
+pub(super) fn section(run: &Run) -> Result<Section, RunError> {
+    let (title, body) = match run.design.hand {
+        Some(_) => ("How it grasps", grasps(run)?),
+        None => ("How it moves", moves(run)?),
+    };
+    Ok(Section { id: "episode", title, body })
 }
 
-/// What there is to say where an episode cannot be run; the rest of the report stands without it.
 fn failed(error: &dyn std::error::Error) -> Markup {
     html! { p { "No episode can be shown: " (error) "." } }
 }
 
-type Failed = Box<dyn std::error::Error>;
-
-/// The controller that the run has trained, ready to run.
-fn trained(run: &Run) -> Result<(SavedRun, Vec<f32>), Failed> {
-    let saved = SavedRun::open(&run.path)?;
-    let params = saved.params()?;
-    Ok((saved, params))
-}
-
 #[cfg(feature = "mujoco")]
-fn grasps(run: &Run) -> Markup {
-    let drawn = trained(run).and_then(|(saved, params)| Ok(super::grasp::section(saved.assembly(), &params)?));
-    drawn.unwrap_or_else(|error| failed(&*error))
+fn grasps(run: &Run) -> Result<Markup, RunError> {
+    let saved = SavedRun::open(&run.path)?;
+    let drawn = super::grasp::section(saved.assembly(), &saved.params()?);
+    Ok(drawn.unwrap_or_else(|error| failed(&error)))
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn grasps(_: &Run) -> Markup {
-    html! {
+#[allow(clippy::unnecessary_wraps)] // as with the engine
+fn grasps(_: &Run) -> Result<Markup, RunError> {
+    Ok(html! {
         p {
             "Grasps are simulated when the report is made, and the program that made this one was built without the MuJoCo engine. \
              A program with it, which is the default, draws them here."
         }
-    }
+    })
 }
 
 /// What the controller sees and commands in the first held-out episode.
-fn curves(run: &Run) -> Result<Markup, Failed> {
-    let (saved, params) = trained(run)?;
-    let assembly = saved.assembly();
+fn moves(run: &Run) -> Result<Markup, RunError> {
+    let saved = SavedRun::open(&run.path)?;
+    let params = saved.params()?;
+    let batch = first_episode(saved.assembly(), &params, run.summary.evaluation.seed);
+    Ok(match batch {
+        Ok(batch) => curves(run, saved.assembly(), &batch),
+        Err(error) => failed(&error),
+    })
+}
+
+fn curves(run: &Run, assembly: &Assembly, batch: &Batch) -> Markup {
     let seed = run.summary.evaluation.seed;
-    let batch = first_episode(assembly, &params, seed)?;
     let environment = assembly.problem.deployment.make.make(None);
     let (seen, given) = (&environment.spec().observation, &environment.spec().command);
     let controller = &run.spec.controller;
@@ -82,16 +83,16 @@ fn curves(run: &Run) -> Result<Markup, Failed> {
             picture(&plot.svg, &format!("episode-{i}"), &format!("{} in one episode", sentence(&plot.label)), about)
         })
         .collect();
-    Ok(html! {
+    html! {
         p {
             "The first held-out episode (seed " (seed) "), by the deterministic controller on the hardware as built: what the \
              controller sees, what it commands, and what each step is worth."
         }
         (gallery(&pictures, ""))
-    })
+    }
 }
 
-fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, Failed> {
+fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, EvaluateError> {
     let design = assembly.built(params);
     let sampler = sampler(assembly, &assembly.problem.deployment, &design)?;
     Ok(sampler.collect(&Serial, assembly.policy.controller_params(params), &held_out(seed, 0..1))?)

@@ -26,7 +26,7 @@ use crate::run_folder::{EXPERIMENT, RunError};
 /// Of folders that are neither, of runs that did not come to their end, of files that are missing or damaged.
 pub fn report(folder: &Path) -> Result<String, RunError> {
     if folder.join(EXPERIMENT).is_file() {
-        return Ok(run::Run::open(folder)?.page().html());
+        return run::Run::open(folder)?.page().map(page::Page::html);
     }
     if folder.join(COMPARISON).is_file() {
         return comparison::page(folder).map(page::Page::html);

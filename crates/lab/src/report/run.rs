@@ -68,15 +68,15 @@ impl Run {
     }
 
     /// The report.
-    pub(super) fn page(&self) -> Page {
-        let mut sections = vec![overview::section(self), episode::section(self), outcome::section(self)];
+    pub(super) fn page(&self) -> Result<Page, RunError> {
+        let mut sections = vec![overview::section(self), episode::section(self)?, outcome::section(self)];
         sections.extend([curves::section(self), design::section(self)]);
         if let Some(hand) = &self.design.hand {
             sections.extend([hand::section(hand), parts::section(self)]);
         }
         sections.extend([tolerances::section(self), law::section(self), provenance::section(self)]);
         let (kind, lead) = ("Run", self.spec.description.clone());
-        Page { title: self.title(), kind, lead, figures: self.key_figures(), sections }
+        Ok(Page { title: self.title(), kind, lead, figures: self.key_figures(), sections })
     }
 
     fn key_figures(&self) -> Vec<KeyFigure> {

@@ -121,6 +121,7 @@ pub(super) const CASES: &[Case] = &[
         }),
         "hwasp report run",
     ),
+    case("The report of a run without its policy", run!(|s| remove(s, "run/policy.safetensors")), "hwasp report run"),
     case("A report that is no page", Made(Sandbox::put_run), "hwasp report run --out report.pdf"),
     case("A comparison in a run folder", Made(Sandbox::put_run), "hwasp compare reach --out run"),
     case("A comparison in a file", Made(|s| s.write("file", "")), "hwasp compare reach --out file"),

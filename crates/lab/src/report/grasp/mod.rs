@@ -33,6 +33,9 @@ struct Reel {
 /// The first held-out episode of every shape.
 pub(super) fn section(assembly: &Assembly, params: &[f32]) -> Result<Markup, PlayError> {
     let takes = takes(assembly, params)?;
+    if takes.is_empty() {
+        return Ok(html! { p { "None of the first " (MOST_EPISODES) " episodes came to its end." } });
+    }
     let poses = takes.iter().map(|take| poses(assembly, take)).collect::<Result<Vec<_>, _>>()?;
     let sketch = Sketch::new(&poses);
     let seed = assembly.spec().train.evaluation_seed;
@@ -104,7 +107,7 @@ fn player(sketch: &Sketch, takes: &[Take], poses: &[Poses]) -> Markup {
                     }
                 }
             }
-            (sketch.svg(&start, "player", "A grasp, drawn as a film", "The moments below show the same as stills."))
+            (sketch.svg(&start, true, ["player", "A grasp, drawn as a film", "The moments beside it show the same as stills."]))
             div.controls {
                 button.play type="button" { "Play" }
                 label { span.hidden { "Time" } input type="range" min="0" max="0" value="0" step="1"; }
@@ -125,7 +128,7 @@ fn stills(sketch: &Sketch, take: &Take, poses: &Poses) -> Markup {
         let about = format!("The object is {} mm above the floor.", frame.height);
         let title = format!("{kind}: {name}{seconds} s");
         html! {
-            li { (sketch.svg(&frame, &format!("still-{kind}-{i}"), &title, &about)) span { (name) (seconds) " s" } }
+            li { (sketch.svg(&frame, false, [&format!("still-{kind}-{i}"), &title, &about])) span { (name) (seconds) " s" } }
         }
     };
     html! {

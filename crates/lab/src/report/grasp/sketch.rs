@@ -152,18 +152,24 @@ impl Sketch {
         self.view.sees(normal)
     }
 
-    /// A picture with its name; `id` is its own.
-    pub(super) fn svg(&self, frame: &Frame, id: &str, title: &str, about: &str) -> Markup {
+    /// A picture with its name; `id` is its own. That of a `film` has all its slots, numbered, for the paths to come.
+    pub(super) fn svg(&self, frame: &Frame, film: bool, [id, title, about]: [&str; 3]) -> Markup {
         let [left, top, width, height] = self.frame;
         let (outer, inner) = (self.link, self.link - View::length(0.0024));
-        let slot = |i: usize| frame.slots.get(i).map_or("", String::as_str);
+        let path = |slot: usize, class: Option<&str>, pen: Option<f64>| {
+            let path = frame.slots.get(slot).map_or("", String::as_str);
+            html! {
+                @if film || !path.is_empty() {
+                    path class=[class] data-slot=[film.then_some(slot)] stroke-width=[pen] d=(path) {}
+                }
+            }
+        };
         let links = |from: usize| {
             html! {
                 @for (i, &link) in ORDER.iter().enumerate() {
-                    path.edge data-slot=(from + i) stroke-width=(outer) d=(slot(from + i)) {}
-                    path class=(LINKS[link]) data-slot=(from + i) stroke-width=(inner) d=(slot(from + i)) {}
+                    (path(from + i, Some("edge"), Some(outer))) (path(from + i, Some(LINKS[link]), Some(inner)))
                 }
-                path.joint data-slot=(from + 6) stroke-width=(0.34 * self.link) d=(slot(from + 6)) {}
+                (path(from + 6, Some("joint"), Some(0.34 * self.link)))
             }
         };
         html! {
@@ -172,13 +178,11 @@ impl Sketch {
                 desc id={ (id) "-d" } { (about) }
                 path.floor d=(self.floor) {}
                 path.grid d=(self.grid) {}
-                path.shadow data-slot="0" d=(slot(0)) {}
+                (path(0, Some("shadow"), None))
                 (links(1))
-                g.object data-kind=(frame.kind) {
-                    @for i in 0..3 { path data-slot=(8 + i) d=(slot(8 + i)) {} }
-                }
+                g.object data-kind=(frame.kind) { @for i in 8..11 { (path(i, None, None)) } }
                 (links(11))
-                g.palm { @for i in 0..3 { path data-slot=(18 + i) d=(slot(18 + i)) {} } }
+                g.palm { @for i in 18..21 { (path(i, None, None)) } }
             }
         }
     }

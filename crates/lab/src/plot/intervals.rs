@@ -27,7 +27,7 @@ const ROW: f64 = 27.0;
 const TOP: f64 = 8.0;
 const LABEL_SIZE: f64 = 12.0;
 /// Room for the figure's text on the right.
-const RIGHT: f64 = 58.0;
+const RIGHT: f64 = 68.0;
 
 /// Draws rows over one axis, on which there is nothing above `most`.
 pub(crate) fn intervals(rows: &[IntervalRow<'_>], axis_text: &str, most: f64) -> String {

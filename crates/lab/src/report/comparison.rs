@@ -174,7 +174,9 @@ fn curves(saved: &SavedComparison) -> Markup {
         let of = |cell: &crate::compare::CellResult| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0);
         let mut runs: Vec<Curve> = saved.cells.iter().map(of).collect();
         if x_axis == XAxis::WallClock {
-            runs.iter_mut().for_each(|run| run.totals.clear());
+            for run in &mut runs {
+                run.totals.clear();
+            }
         }
         let options = PlotOptions { x_axis, band: Band::Bootstrap, ..saved_plot_options(groups()) };
         match curve_panels(&runs, &options) {

@@ -17,11 +17,6 @@ pub(super) fn picture(svg: &str, id: &str, title: &str, description: &str) -> Ma
     PreEscaped(format!("{open} role=\"img\" aria-labelledby=\"{id}-t {id}-d\">{names}{}", body.trim_start()))
 }
 
-/// The picture that matters most, larger than those that follow it.
-pub(super) fn first(picture: &Markup) -> Markup {
-    html! { figure.gallery.first { div.pictures { (picture) } } }
-}
-
 /// Pictures side by side where there is room, and what is to be said of them all.
 pub(super) fn gallery(pictures: &[Markup], caption: &str) -> Markup {
     html! {

@@ -67,6 +67,11 @@ impl Run {
         format!("{} · {} · seed {}", self.spec.name, self.spec.method.name(), self.spec.seed)
     }
 
+    /// Its folder as one types it into a shell.
+    pub(super) fn typed_path(&self) -> String {
+        words::quoted(&self.path.to_string_lossy())
+    }
+
     /// The report.
     pub(super) fn page(&self) -> Result<Page, RunError> {
         let mut sections = vec![overview::section(self), episode::section(self)?, outcome::section(self)];

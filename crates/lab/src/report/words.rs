@@ -16,9 +16,13 @@ pub(super) fn decimals(size: f64) -> usize {
     }
 }
 
-/// A minus that is one.
-pub(super) fn signed(text: &str) -> String {
-    text.replace('-', "\u{2212}")
+/// A minus that is one, and none before zeros.
+fn signed(text: &str) -> String {
+    if text.contains(|c: char| ('1'..='9').contains(&c)) {
+        text.replace('-', "\u{2212}")
+    } else {
+        text.trim_start_matches(['-', '+']).to_owned()
+    }
 }
 
 /// A number with this many decimals.
@@ -58,6 +62,16 @@ pub(super) fn sentence(text: &str) -> String {
 /// A name without underscores.
 pub(super) fn spaced(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// A word as a shell takes it.
+pub(super) fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
 }
 
 /// A time in the units that one would say.
@@ -103,6 +117,14 @@ mod tests {
             assert_eq!(date(seconds), text);
         }
         assert!(date(u64::MAX).ends_with("UTC"));
+    }
+
+    #[test]
+    fn signs() {
+        assert_eq!(
+            [decimal(-2.55, 1), decimal(-0.04, 1), change(3.0, 0), change(-0.04, 1)],
+            ["\u{2212}2.5", "0.0", "+3", "0.0"]
+        );
     }
 
     #[test]

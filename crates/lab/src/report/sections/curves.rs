@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::super::figure::{first, gallery, picture};
+use super::super::figure::{gallery, picture};
 use super::super::page::Section;
 use super::super::run::Run;
 use super::super::words::sentence;
@@ -32,10 +32,10 @@ pub(in super::super) fn panels(plots: &PanelPlots, id: &str, against: &str) -> M
     };
     let pictures: Vec<Markup> = plots.panels.iter().enumerate().map(described).collect();
     let explanation = if plots.explanation.is_empty() { String::new() } else { sentence(&plots.explanation) + "." };
-    // The return, above many numbers of a design.
+    // The return has a row to itself above many numbers of a design.
     let (head, others) = if pictures.len() > 4 { pictures.split_at(1) } else { pictures.split_at(0) };
     html! {
-        @for picture in head { (first(picture)) }
+        @if !head.is_empty() { (gallery(head, "")) }
         (gallery(others, &explanation))
         @if !plots.notes.is_empty() { ul.notes { @for note in &plots.notes { li { (note.to_string()) } } } }
     }

@@ -115,7 +115,7 @@ fn transmission(run: &Run, hand: &HandReport) -> Markup {
     let part = |joint: &str| parts.iter().find(|part| part.joint == joint);
     let columns = [("pulley radius", "mm", 1e3), ("spring stiffness", "N·mm/rad", 1e3), ("preload", "rad", 1.0)];
     html! {
-        table.cards {
+        table.cards[!parts.is_empty()] {
             caption { "The transmission as trained, joint by joint, and the limits within which it was sought" }
             thead {
                 tr {

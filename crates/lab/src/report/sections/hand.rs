@@ -38,7 +38,7 @@ fn open(hand: &HandReport) -> Markup {
     let DigitPair { thumb, finger } = hand.stays_open;
     html! {
         p { "Against its own weight the thumb " (fate(thumb)) ", and each finger " (fate(finger)) "." }
-        table.cards {
+        table {
             caption { "Torques at the joints of the open hand, N·mm" }
             thead {
                 tr {
@@ -50,9 +50,9 @@ fn open(hand: &HandReport) -> Markup {
                 @for joint in &hand.joints {
                     tr {
                         th scope="row" { (spaced(joint.joint)) }
-                        td.n data-label="spring opens" { (decimal(1e3 * joint.spring, 2)) }
-                        td.n data-label="weight closes" { (decimal(1e3 * joint.weight, 2)) }
-                        td.n data-label="margin" { (decimal(1e3 * joint.margin, 2)) }
+                        td.n { (decimal(1e3 * joint.spring, 2)) }
+                        td.n { (decimal(1e3 * joint.weight, 2)) }
+                        td.n { (decimal(1e3 * joint.margin, 2)) }
                     }
                 }
             }

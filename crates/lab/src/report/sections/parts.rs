@@ -7,7 +7,7 @@ use super::super::page::Section;
 use super::super::run::Run;
 use super::super::words::{change, decimal, interval, percent, rate_interval, spaced};
 use super::outcome::rate_row;
-use super::provenance::command;
+use super::provenance::not_yet;
 use crate::evaluate::{Evaluation, MeanInterval};
 use crate::paired::Change;
 use crate::parts::{JointParts, PartsList, SpringPart};
@@ -15,14 +15,12 @@ use crate::plot::{IntervalRow, intervals};
 use crate::text::grouped;
 
 pub(in super::super) fn section(run: &Run) -> Section {
-    let body = match &run.parts {
-        Some(list) => html! { (springs(list)) (worth(list)) },
-        None => html! {
-            p { "This run has no list of parts yet. It is made by" }
-            (command(&format!("hwasp parts {}", run.path.display())))
-            p { "and the report, made again, then shows it: springs from a catalogue, pulleys, and what rounding to them costs." }
-        },
-    };
+    let (line, then) =
+        (format!("hwasp parts {}", run.typed_path()), "springs, pulleys, and what rounding to them costs");
+    let body = run
+        .parts
+        .as_ref()
+        .map_or_else(|| not_yet("parts", &line, then), |list| html! { (springs(list)) (worth(list)) });
     Section { id: "parts", title: "Parts to buy and make", body }
 }
 

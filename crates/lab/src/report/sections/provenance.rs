@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::super::page::Section;
 use super::super::run::Run;
-use super::super::words::{date, decimal, duration};
+use super::super::words::{date, decimal, duration, quoted};
 use crate::checkpoint::experiment_hash;
 use crate::run_folder::{EXPERIMENT, Provenance};
 use crate::text::grouped;
@@ -43,6 +43,15 @@ pub(in super::super) fn command(line: &str) -> Markup {
     html! { pre.command { code { (line) } } }
 }
 
+/// What stands in the place of a file that a run folder has not yet.
+pub(in super::super) fn not_yet(what: &str, line: &str, then: &str) -> Markup {
+    html! {
+        p { "This run has no " (what) " yet. What makes them:" }
+        (command(line))
+        p { "The report, made again, then shows " (then) "." }
+    }
+}
+
 /// What was typed, when and where.
 pub(in super::super) fn origin(provenance: &Provenance) -> Markup {
     html! {
@@ -69,16 +78,6 @@ fn typed(words: &[String]) -> String {
         |program: &String| std::path::Path::new(program).file_name().map(|name| name.to_string_lossy().into_owned());
     let program = words.first().and_then(name).unwrap_or_default();
     std::iter::once(program).chain(words.iter().skip(1).map(|word| quoted(word))).collect::<Vec<_>>().join(" ")
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }
 
 #[cfg(test)]

@@ -6,19 +6,13 @@ use super::super::figure::{picture, wide};
 use super::super::page::Section;
 use super::super::run::Run;
 use super::super::words::{change, interval, percent, spaced};
-use super::provenance::command;
+use super::provenance::not_yet;
 use crate::plot::tornado_plot;
 use crate::tolerances::{Sensitivities, Side};
 
 pub(in super::super) fn section(run: &Run) -> Section {
-    let body = match &run.tolerances {
-        Some(list) => sensitivities(list),
-        None => html! {
-            p { "This run has no tolerances yet. They are made by" }
-            (command(&format!("hwasp tolerances {}", run.path.display())))
-            p { "and the report, made again, then shows which parameter has to be precise." }
-        },
-    };
+    let (line, then) = (format!("hwasp tolerances {}", run.typed_path()), "what an error of each parameter costs");
+    let body = run.tolerances.as_ref().map_or_else(|| not_yet("tolerances", &line, then), sensitivities);
     Section { id: "tolerances", title: "Which part has to be precise", body }
 }
 
@@ -32,7 +26,7 @@ fn sensitivities(list: &Sensitivities) -> Markup {
             " held-out episodes. The one whose error costs most return is on top."
         }
         (wide(&chart, "The chart; scroll to see all of it", "The changes are paired: each episode with itself."))
-        table.cards {
+        table {
             caption { "Change of return, with 95 % intervals, and success with each parameter off to either side" }
             thead {
                 tr {
@@ -44,9 +38,9 @@ fn sensitivities(list: &Sensitivities) -> Markup {
                 @for parameter in &list.parameters {
                     tr {
                         th scope="row" { (spaced(&parameter.name)) }
-                        td data-label="error" { "±" (parameter.error_text) }
-                        td.n data-label="too small" { div { (side(&parameter.minus)) } }
-                        td.n data-label="too large" { div { (side(&parameter.plus)) } }
+                        td { "±" (parameter.error_text) }
+                        td.n { (side(&parameter.minus)) }
+                        td.n { (side(&parameter.plus)) }
                     }
                 }
             }

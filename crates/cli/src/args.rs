@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use hwasp_lab::export::{self, Kind};
 use hwasp_lab::play;
 use hwasp_lab::plot::XAxis;
-use hwasp_lab::spec::Method;
+use hwasp_lab::spec::{Method, TrainSpec};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,6 +17,7 @@ Examples:
   hwasp train mass-spring                     train a design and its controller, into runs/
   hwasp eval runs/mass-spring-hwasp-seed0     evaluate the result on held-out starts
   hwasp plot runs/* --out curves.png          compare runs
+  hwasp report runs/mass-spring-hwasp-seed0   all of it on one page for a browser
 
 Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong, 130 if it was asked to
 stop (Ctrl-C, SIGTERM).";
@@ -78,12 +79,18 @@ pub(crate) enum Command {
     /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON; a hand
     /// as MJCF, URDF, STL and OpenSCAD
     Export(ExportArgs),
+    /// Choose pulleys and springs for a run's hand, simulate it with them, and train its controller further on them
+    Parts(PartsArgs),
+    /// Simulate a run's design with every parameter off by its manufacturing error: which part has to be precise
+    Tolerances(TolerancesArgs),
     /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
     Replay(ReplayArgs),
     /// Draw grasps of a run: held-out episodes as films, and on one sheet (in builds with the feature `renderer`)
     Play(PlayArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
+    /// Make the report of a run or a comparison: one HTML file for a browser or a printer, which loads nothing
+    Report(ReportArgs),
     /// Train methods against each other, several seeds each under one budget, and say which is better
     Compare(CompareArgs),
     /// Repeat a toy figure or table of the paper with the authors' settings, their numbers beside ours
@@ -204,15 +211,8 @@ pub(crate) struct TrainArgs {
 pub(crate) struct EvalArgs {
     /// A run folder, as `hwasp train` writes one
     pub(crate) run: PathBuf,
-    /// Episodes [default: what the experiment says]
-    #[arg(long, allow_negative_numbers = true, value_parser = whole(1..=MOST_EPISODES))]
-    pub(crate) episodes: Option<u64>,
-    /// Root seed of their starts [default: what the experiment says]
-    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
-    pub(crate) seed: Option<u64>,
-    /// Threads for episodes; they do not change the result
-    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
-    pub(crate) threads: NonZeroUsize,
+    #[command(flatten)]
+    pub(crate) held_out: HeldOutArgs,
     /// Evaluate under another value of the experiment, such as `task.disturbance_force="0.2 N"`; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
@@ -298,6 +298,63 @@ impl KindArgs {
 }
 
 #[derive(Debug, clap::Args)]
+pub(crate) struct PartsArgs {
+    /// A run folder of a grasping problem, as `hwasp train` writes one
+    pub(crate) run: PathBuf,
+    /// Springs to choose from, a CSV file with the columns of docs/parts.md [default: one that comes with the program, of
+    /// standard sizes and nobody's stock]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) catalogue: Option<PathBuf>,
+    /// Set what the workshop has, such as `axle="3 mm"` or `hole_pitch="10 deg"`; may be repeated
+    #[arg(long = "bench", value_name = "KEY=VALUE")]
+    pub(crate) bench: Vec<String>,
+    /// Train the controller further on the parts, for so many simulator steps, such as 3e5 [default: not at all]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
+    pub(crate) fine_tune: Option<u64>,
+    #[command(flatten)]
+    pub(crate) held_out: HeldOutArgs,
+    /// The folder of the list; its files are replaced [default: build/ in the run folder]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct TolerancesArgs {
+    /// A run folder, as `hwasp train` writes one
+    pub(crate) run: PathBuf,
+    /// How far a parameter may be off, such as `radius="0.1 mm"`, `thumb_distal_stiffness="10 %"`; may be repeated [default: of a
+    /// hand radius 0.1 mm, stiffness 5 %, preload 0.13 rad; otherwise 5 %]
+    #[arg(long = "error", value_name = "NAME=SIZE")]
+    pub(crate) error: Vec<String>,
+    #[command(flatten)]
+    pub(crate) held_out: HeldOutArgs,
+    /// The folder of figures and pictures; files there are replaced [default: build/ in the run folder]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Held-out episodes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct HeldOutArgs {
+    /// Episodes [default: what the experiment says]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(1..=MOST_EPISODES))]
+    episodes: Option<u64>,
+    /// Root seed of their starts [default: what the experiment says]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
+    seed: Option<u64>,
+    /// Threads for episodes; they do not change the result
+    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
+    pub(crate) threads: NonZeroUsize,
+}
+
+impl HeldOutArgs {
+    /// How many episodes, and the root seed of their starts.
+    pub(crate) fn asked(&self, train: &TrainSpec) -> (u64, u64) {
+        (self.episodes.unwrap_or(train.evaluation_episodes as u64), self.seed.unwrap_or(train.evaluation_seed))
+    }
+}
+
+#[derive(Debug, clap::Args)]
 pub(crate) struct ReplayArgs {
     /// A file in `faults` or `checkpoints` of a run folder
     pub(crate) file: PathBuf,
@@ -371,6 +428,15 @@ pub(crate) struct PlotArgs {
     /// A line above it [default: none]
     #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReportArgs {
+    /// A run folder, as `hwasp train` writes one, or the folder of a comparison
+    pub(crate) folder: PathBuf,
+    /// The report, .html [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]

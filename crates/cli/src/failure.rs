@@ -89,6 +89,7 @@ fn of_run(error: &RunError) -> Option<String> {
     };
     let parent = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
     Some(match error {
+        RunError::Nothing { .. } => "name a folder that `hwasp train` or `hwasp compare` has written to the end".into(),
         RunError::NotARun { .. } => "name a folder that `hwasp train` has written".into(),
         RunError::Unfinished { path, .. } if !path.join("summary.json").exists() => {
             format!("`hwasp train --resume {}` goes on with it", path.display())
@@ -103,6 +104,9 @@ fn of_run(error: &RunError) -> Option<String> {
             format!("{how}; {}", again(&parent(path)))
         }
         RunError::Policy { path, .. } | RunError::Metrics { path, .. } | RunError::Decode { path, .. } => {
+            if let Some(hint) = of_other(path) {
+                return Some(hint);
+            }
             format!("the file was changed or damaged, or belongs to another run; {}", again(&parent(path)))
         }
         RunError::Unsound { folder, .. } => again(&parent(folder)),
@@ -123,6 +127,20 @@ fn of_run(error: &RunError) -> Option<String> {
         RunError::Io { action: "create", .. } | RunError::Plot(PlotError::Write { .. }) => {
             "name another folder with --out".into()
         }
+        _ => return None,
+    })
+}
+
+/// The same for a file that no training writes, or that is not needed.
+fn of_other(file: &Path) -> Option<String> {
+    let run = file.parent().and_then(Path::parent).unwrap_or(Path::new(""));
+    Some(match file.file_name()?.to_str()? {
+        "parts.json" => format!("the file was changed or damaged; `hwasp parts {}` makes it anew", run.display()),
+        "tolerances.json" => {
+            format!("the file was changed or damaged; `hwasp tolerances {}` makes it anew", run.display())
+        }
+        "provenance.json" => "the file was changed or damaged; a run is read without it, too".into(),
+        "comparison.json" => "the same `hwasp compare` command makes it anew".into(),
         _ => return None,
     })
 }

@@ -1,11 +1,13 @@
 //! Progress: a bar on a terminal, a line now and then elsewhere.
 
+use std::time::Instant;
+
 use hwasp_lab::metrics::MetricsRow;
+use hwasp_lab::text::{grouped, quantity};
 use hwasp_lab::{Assembly, Event, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::log::{PROGRESS, has_terminal};
-use crate::report::{grouped, quantity};
 
 /// Lines per training where there is no terminal.
 const LINES: u64 = 20;
@@ -48,11 +50,7 @@ impl Progress {
         self.env_steps = env_steps.max(1);
         self.names = totals.to_vec();
         if self.terminal {
-            self.bar = ProgressBar::new(self.env_steps);
-            // The template is a constant; should it ever be wrong, the plain bar will do.
-            if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
-                self.bar.set_style(style);
-            }
+            self.bar = styled(self.env_steps);
         }
     }
 
@@ -81,6 +79,48 @@ impl Progress {
             tracing::info!(target: PROGRESS, "{steps}  {message}");
         }
     }
+}
+
+/// Counts pieces of work: a bar on a terminal, a line for each elsewhere.
+pub(crate) struct Counter {
+    what: &'static str,
+    began: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Counter {
+    /// `what`: such as `designs simulated`.
+    pub(crate) fn new(what: &'static str) -> Self {
+        Self { what, began: Instant::now(), bar: None }
+    }
+
+    /// So many are done, at least one, of so many.
+    pub(crate) fn tell(&mut self, done: usize, all: usize) {
+        let left = self.began.elapsed().as_secs_f64() * (all - done) as f64 / done as f64;
+        let message = format!("{done} of {all} {}, {} left", self.what, duration(left));
+        if has_terminal() {
+            let bar = self.bar.get_or_insert_with(|| styled(all as u64));
+            bar.set_position(done as u64);
+            bar.set_message(message.clone());
+        }
+        tracing::info!(target: PROGRESS, "{message}");
+    }
+
+    /// Clears the bar.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn styled(length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    // The template is a constant; should it ever be wrong, the plain bar will do.
+    if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+        bar.set_style(style);
+    }
+    bar
 }
 
 /// A time such as `42 s`, `3 min 5 s` or `2 h 10 min`.

@@ -1,6 +1,7 @@
 //! What the program says, as text.
 
 pub(crate) mod design;
+pub(crate) mod parts;
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,6 +10,7 @@ use hwasp_core::Policy;
 use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::export::{ExportFile, Kind};
 use hwasp_lab::spec::Spec;
+use hwasp_lab::text::{grouped, quantity};
 use hwasp_lab::{Assembly, Evaluation, MeanInterval, Replay, Summary};
 
 /// The line before a training.
@@ -81,12 +83,6 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         path.display()
     );
     text
-}
-
-pub(crate) fn quantity(value: f64, unit: &str) -> String {
-    // Four decimals, and as many more as small quantities need for three figures.
-    let decimals = if value == 0.0 { 4 } else { (2 - value.abs().log10().floor() as i32).clamp(4, 9) as usize };
-    format!("{value:.decimals$} {unit}").trim_end().to_owned()
 }
 
 /// An evaluation; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
@@ -173,19 +169,6 @@ fn shorten(names: &[String]) -> String {
     const SHOWN: usize = 4;
     let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
     if names.len() > SHOWN { format!("{shown}, … ({} in all)", names.len()) } else { shown }
-}
-
-/// A count with its digits in threes: 4,000,000.
-pub(crate) fn grouped(count: u64) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 #[cfg(test)]

@@ -11,12 +11,14 @@ use hwasp_core::{
     Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
+use hwasp_tasks::hand::HandError;
 use hwasp_tasks::mass_spring::MassSpringError;
 use hwasp_tasks::pendulum::PendulumError;
 use hwasp_tasks::reach::ReachError;
 use thiserror::Error;
 
 pub use self::learner::LearnerSettings;
+pub(crate) use self::problem::law;
 use self::problem::{initial, problem};
 use crate::spec::{ActivationKind, Method, Place, Spec};
 
@@ -39,6 +41,9 @@ pub enum AssembleError {
     #[cfg(feature = "mujoco")]
     #[error(transparent)]
     Grasp(#[from] hwasp_mujoco::grasp::GraspError),
+    /// The hand's mechanism.
+    #[error(transparent)]
+    Hand(#[from] HandError),
     /// A problem whose physics are not in this program.
     #[error(
         "{problem} needs the MuJoCo engine, and this program was built without it: build it with the feature \"mujoco\""

@@ -3,8 +3,10 @@
 use hwasp_core::unit;
 use hwasp_diff::GraphStyle;
 
-use crate::assemble::Assembly;
+use crate::assemble::{AssembleError, Assembly, law};
 use crate::plot::{PanelText, PlotOptions, RETURN};
+use crate::spec::Spec;
+use crate::summary::DesignGroupSummary;
 
 /// A computational graph in two formats.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,18 +29,11 @@ impl Assembly {
 
     /// Axis texts, units and known optima for pictures of such runs.
     pub fn plot_options(&self, title: String) -> PlotOptions {
-        let mut panels =
-            vec![PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }];
-        let groups = self.policy.space().groups();
-        for ((column, group), optimum) in self.total_names().into_iter().zip(groups).zip(&self.problem.optimum) {
-            let name = group.name.replace('_', " ");
-            let label = if group.count == 1 { name } else { format!("total {name}") };
-            let most = group.hi * group.count as f64;
-            let shown = unit(group.dimension.si()).map_or("", |unit| unit.readable(most).symbol);
+        let mut panels = vec![return_text()];
+        for (group, optimum) in self.policy.space().groups().iter().zip(&self.problem.optimum) {
             // The curve shows the design as trained; the optimum is of the design as built.
-            let same = self.trains_what_is_built();
-            let optimum = optimum.filter(|_| same);
-            panels.push(PanelText { column, label, unit: shown.into(), optimum });
+            let optimum = optimum.filter(|_| self.trains_what_is_built());
+            panels.push(total_text((&group.name, group.count), (group.dimension.si(), group.hi), optimum));
         }
         PlotOptions { title, panels, ..PlotOptions::default() }
     }
@@ -49,4 +44,41 @@ impl Assembly {
         let middle: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
         self.problem.training.law.as_built(&middle) == middle
     }
+}
+
+/// The axis text of the return.
+fn return_text() -> PanelText {
+    PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }
+}
+
+/// The column of a group's total; a group of one is its own.
+pub(crate) fn total_name(group: &str, count: usize) -> String {
+    if count == 1 { group.to_owned() } else { format!("{group}_total") }
+}
+
+/// The axis text of the total of a group of parameters, each of which has the SI `unit` and is at most `hi`.
+fn total_text((group, count): (&str, usize), (si, hi): (&str, f64), optimum: Option<f64>) -> PanelText {
+    let name = group.replace('_', " ");
+    let label = if count == 1 { name } else { format!("total {name}") };
+    let shown = unit(si).map_or("", |unit| unit.readable(hi * count as f64).symbol);
+    PanelText { column: total_name(group, count), label, unit: shown.into(), optimum }
+}
+
+/// What [`Assembly::plot_options`] says, of a saved design: without the engine, too.
+pub(crate) fn saved_plot_options<'g>(
+    groups: impl IntoIterator<Item = (&'g str, &'g DesignGroupSummary)>,
+) -> PlotOptions {
+    let total = |(name, group): (&'g str, &'g DesignGroupSummary)| {
+        let optimum = group.optimum.filter(|_| group.as_built == group.values);
+        total_text((name, group.values.len()), (&group.unit, group.limits[1]), optimum)
+    };
+    let panels = std::iter::once(return_text()).chain(groups.into_iter().map(total)).collect();
+    PlotOptions { panels, ..PlotOptions::default() }
+}
+
+/// Draws the law of an experiment by itself, design parameters with their units.
+pub(crate) fn law_svg(spec: &Spec) -> Result<String, AssembleError> {
+    let units = spec.task.groups().into_iter().map(|group| (group.name.to_owned(), group.dimension.si().to_owned()));
+    let style = GraphStyle { units: units.collect(), ..GraphStyle::default() };
+    Ok(law(spec)?.program().to_svg_with(&style))
 }

@@ -137,25 +137,44 @@ pub fn evaluate_in(
     world: &World,
     design: &[f64],
     params: &[f32],
-    (episodes, seed): (u64, u64),
+    asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
+    let batch = rollouts(assembly, world, design, params, asked, executor)?;
+    Ok(Evaluation::new(&batch, assembly.spec().discount(), asked)?)
+}
+
+/// The episodes of an evaluation.
+pub(crate) fn rollouts(
+    assembly: &Assembly,
+    world: &World,
+    design: &[f64],
+    params: &[f32],
+    (episodes, seed): (u64, u64),
+    executor: &dyn Executor,
+) -> Result<Batch, EvaluateError> {
     let sampler = sampler(assembly, world, design)?;
     let controller = assembly.policy.controller_params(params);
-    let batch = sampler.collect(executor, controller, &held_out(seed, 0..episodes))?;
-    let discounted = batch.returns(assembly.spec().discount());
-    let mut stream = Stream::seed_from_u64(seed);
-    let sample = Sample::new(&discounted)?;
-    Ok(Evaluation {
-        episodes,
-        seed,
-        discounted_return: mean_interval(&discounted, &mut stream)?,
-        undiscounted_return: mean_interval(&batch.returns(1.0), &mut stream)?,
-        median_discounted_return: sample.quantile(0.5),
-        worst_discounted_return: sample.min(),
-        discarded_episodes: batch.faults.len() as u64,
-        success: success_rates(&batch),
-    })
+    Ok(sampler.collect(executor, controller, &held_out(seed, 0..episodes))?)
+}
+
+impl Evaluation {
+    /// What the episodes come to.
+    pub(crate) fn new(batch: &Batch, discount: f64, (episodes, seed): (u64, u64)) -> Result<Self, StatsError> {
+        let discounted = batch.returns(discount);
+        let mut stream = Stream::seed_from_u64(seed);
+        let sample = Sample::new(&discounted)?;
+        Ok(Self {
+            episodes,
+            seed,
+            discounted_return: mean_interval(&discounted, &mut stream)?,
+            undiscounted_return: mean_interval(&batch.returns(1.0), &mut stream)?,
+            median_discounted_return: sample.quantile(0.5),
+            worst_discounted_return: sample.min(),
+            discarded_episodes: batch.faults.len() as u64,
+            success: success_rates(batch),
+        })
+    }
 }
 
 /// The deterministic controller on the hardware of `design` in a world; for [`HardwarePolicy::controller_params`].
@@ -171,7 +190,7 @@ pub(crate) fn held_out(seed: u64, indices: Range<u64>) -> Episodes {
     Episodes { seed, iteration: 0, indices, progress: 1.0, kind: EpisodeKind::Evaluation }
 }
 
-fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {
+pub(crate) fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {
     let Interval { low, high, .. } = bootstrap_interval(values, Sample::mean, stream)?;
     Ok(MeanInterval { mean: Sample::new(values)?.mean(), low, high })
 }

@@ -51,22 +51,26 @@ pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Ar
 impl<'a> Gradient<'a> {
     /// From the beginning, or from where a training was interrupted.
     pub(crate) fn new(assembly: &'a Assembly, from: Option<&Archive>) -> Result<Self, StateError> {
-        let episode_steps = assembly.spec().train.episode_steps;
-        let sampler =
-            Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(episode_steps));
-        let learner = assembly.learner(assembly.init());
-        let mut state = Self { assembly, sampler, learner, learned: Learned::default() };
+        let mut state = Self::beginning(assembly, assembly.init());
         if let Some(archive) = from {
             state.load(archive)?;
         }
         Ok(state)
     }
 
+    /// From the beginning, with these parameters.
+    pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
+        let episode_steps = assembly.spec().train.episode_steps;
+        let sampler =
+            Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(episode_steps));
+        Self { assembly, sampler, learner: assembly.learner(params), learned: Learned::default() }
+    }
+
     pub(crate) fn params(&self) -> Vec<f32> {
         self.learner.params().to_vec()
     }
 
-    fn checkpoint(&mut self) -> Result<Checkpoint, StateError> {
+    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, StateError> {
         let archive = self.save()?;
         Ok(self.learned.checkpoint(archive))
     }

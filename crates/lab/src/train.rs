@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use crate::assemble::{AssembleError, Assembly};
 use crate::checkpoint::Checkpoint;
+use crate::drawing::total_name;
 use crate::evaluate::{EvaluateError, Evaluation, evaluate};
 use crate::gradient::{Gradient, gradient};
 use crate::learned::{Clock, Loop};
@@ -138,6 +139,14 @@ pub fn train_from(
 }
 
 impl Assembly {
+    /// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
+    ///
+    /// # Errors
+    /// Where a parameter is no number.
+    pub fn beginning(&self, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
+        Ok(Gradient::beginning(self, params).checkpoint()?)
+    }
+
     /// The parameters that a training had come to: the learner's, or the best of a search.
     pub fn params_at(&self, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
         let archive = &checkpoint.archive;
@@ -151,6 +160,6 @@ impl Assembly {
     /// one.
     pub fn total_names(&self) -> Vec<String> {
         let groups = self.policy.space().groups().iter();
-        groups.map(|g| if g.count == 1 { g.name.clone() } else { format!("{}_total", g.name) }).collect()
+        groups.map(|g| total_name(&g.name, g.count)).collect()
     }
 }

@@ -10,11 +10,8 @@ use crate::{output, report};
 pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &args.set)?;
     let params = saved.params().map_err(Failure::input)?;
-    let settings = &saved.assembly().spec().train;
-    let episodes = args.episodes.unwrap_or(settings.evaluation_episodes as u64);
-    let seed = args.seed.unwrap_or(settings.evaluation_seed);
-    let executor = executor(args.threads)?;
-    let asked = (episodes, seed);
+    let asked = args.held_out.asked(&saved.assembly().spec().train);
+    let executor = executor(args.held_out.threads)?;
     let evaluation = if args.native_tendons {
         evaluate_native(saved.assembly(), &params, asked, &*executor)
     } else {

@@ -1,10 +1,8 @@
 //! `hwasp graph`.
 
-use std::io;
-
-use super::experiment;
+use super::{experiment, write_out};
 use crate::args::GraphArgs;
-use crate::failure::{Failure, OTHER_FILE};
+use crate::failure::Failure;
 use crate::output;
 
 pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
@@ -22,9 +20,6 @@ pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
             return Err(Failure::input(format!("`{}` {text}", path.display())));
         }
     };
-    std::fs::write(path, text).map_err(|e| {
-        let error = io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display()));
-        Failure::from(error).hint(OTHER_FILE)
-    })?;
+    write_out(path, &text)?;
     Ok(output::print(&format!("{}\n", path.display()))?)
 }

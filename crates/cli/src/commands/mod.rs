@@ -7,12 +7,16 @@ pub(crate) mod eval;
 pub(crate) mod export;
 pub(crate) mod graph;
 pub(crate) mod list;
+pub(crate) mod parts;
 pub(crate) mod play;
 pub(crate) mod plot;
 pub(crate) mod replay;
+pub(crate) mod report;
 pub(crate) mod reproduce;
+pub(crate) mod tolerances;
 pub(crate) mod train;
 
+use std::io;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
@@ -23,7 +27,7 @@ use hwasp_lab::spec::{self, Layers, Spec};
 use hwasp_lab::{Assembly, SavedRun};
 
 use crate::args::SettingsArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, OTHER_FILE};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
 fn layers(experiment: &str, set: &[String], further: &[(&str, String)]) -> Result<Layers, Failure> {
@@ -64,6 +68,14 @@ fn run_folder(path: &Path) -> Result<&Path, Failure> {
     let what = if path.exists() { "is not a folder" } else { "does not exist" };
     let hint = "name a run folder; `hwasp train` says where it writes one, under runs/ unless --out names another";
     Err(Failure::input(format!("{} {what}\n  = hint: {hint}", path.display())))
+}
+
+/// Writes a file that --out names.
+fn write_out(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|e| {
+        let error = io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display()));
+        Failure::from(error).hint(OTHER_FILE)
+    })
 }
 
 fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {

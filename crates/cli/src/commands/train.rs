@@ -1,10 +1,13 @@
 //! `hwasp train`.
 
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
+use hwasp_core::Executor;
+use hwasp_lab::checkpoint::Checkpoint;
 use hwasp_lab::{
-    Assembly, Keeping, Observer, ObserverError, Provenance, Resumed, RunError, RunFolder, TensorBoard, TrainError,
-    train_from,
+    Assembly, Keeping, Observer, ObserverError, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard,
+    TrainError, Trained, train_from,
 };
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
@@ -29,24 +32,37 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
 
     let stop = stop_on_signal()?;
 
-    let mut progress = Progress::new(&assembly);
-    let mut observers: Vec<&mut dyn Observer> = vec![&mut folder];
-    observers.extend(board.as_mut().map(|board| board as &mut dyn Observer));
     output::remark(&report::beginning(assembly.spec(), &path, args.resume.is_some(), from));
-    if !args.quiet {
-        observers.push(&mut progress);
-    }
-    let trained = train_from(from, &assembly, &*executor, &mut observers, &stop);
-    drop(observers);
-    progress.finish();
-    let trained = trained.map_err(|error| ended(error, &mut folder))?;
-    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", path.display());
-    let finished = folder.finish(&assembly, &trained);
-    let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
+    let (_, summary) = into_folder(&assembly, &mut folder, from, &*executor, (board.as_mut(), args.quiet), &stop)?;
     if !args.quiet {
         output::print(&report::training(&summary, &path))?;
     }
     Ok(())
+}
+
+/// Trains into a folder, for TensorBoard too where that is wanted, with a bar unless all is to be quiet; and finishes it.
+pub(super) fn into_folder(
+    assembly: &Assembly,
+    folder: &mut RunFolder,
+    from: Option<&Checkpoint>,
+    executor: &dyn Executor,
+    (board, quiet): (Option<&mut TensorBoard>, bool),
+    stop: &AtomicBool,
+) -> Result<(Trained, Summary), Failure> {
+    let mut progress = Progress::new(assembly);
+    let mut observers: Vec<&mut dyn Observer> = vec![folder];
+    observers.extend(board.map(|board| board as &mut dyn Observer));
+    if !quiet {
+        observers.push(&mut progress);
+    }
+    let trained = train_from(from, assembly, executor, &mut observers, stop);
+    drop(observers);
+    progress.finish();
+    let trained = trained.map_err(|error| ended(error, folder))?;
+    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", folder.path().display());
+    let finished = folder.finish(assembly, &trained);
+    let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
+    Ok((trained, summary))
 }
 
 fn keeping(args: &TrainArgs) -> Keeping {

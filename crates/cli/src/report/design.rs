@@ -2,11 +2,8 @@
 
 use std::fmt::Write;
 
-use hwasp_core::unit;
-use hwasp_lab::DesignGroupSummary;
 use hwasp_lab::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
-
-use super::quantity;
+use hwasp_lab::text::Shown;
 
 /// Travel between the printed rows of free closing, mm.
 const ROWS_EVERY: usize = 4;
@@ -72,36 +69,6 @@ fn best(report: &GroupReport, shown: &Shown) -> String {
 
 fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &v| (lo.min(v), hi.max(v)))
-}
-
-/// The unit in which a group reads well: mm and N·mm/rad for what is inside a finger.
-struct Shown {
-    unit: String,
-    to_si: f64,
-}
-
-impl Shown {
-    fn of(group: &DesignGroupSummary) -> Self {
-        let most = group.limits[1] * group.values.len() as f64;
-        let shown = unit(&group.unit).map(|unit| unit.readable(most));
-        shown.map_or(Self { unit: group.unit.clone(), to_si: 1.0 }, |u| Self { unit: u.symbol.into(), to_si: u.to_si })
-    }
-
-    /// With its unit, to four decimals and more.
-    fn long(&self, value: f64) -> String {
-        quantity(value / self.to_si, &self.unit)
-    }
-
-    /// With its unit and without idle zeros.
-    fn with_unit(&self, value: f64) -> String {
-        format!("{} {}", self.short(value), self.unit).trim_end().to_owned()
-    }
-
-    /// Without either.
-    fn short(&self, value: f64) -> String {
-        let text = quantity(value / self.to_si, "");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    }
 }
 
 /// The twelve as a table, beside the paper's two hands, and whether springs hold the digits open.

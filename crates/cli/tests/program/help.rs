@@ -17,9 +17,24 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let lines = ["train", "eval", "design", "export", "play", "plot", "compare", "reproduce", "check", "list", "graph"]
-        .map(|command| format!("{command} --help"));
-    insta::assert_snapshot!(sandbox.transcript(&lines.each_ref().map(String::as_str)));
+    let commands = [
+        "train",
+        "eval",
+        "design",
+        "export",
+        "parts",
+        "tolerances",
+        "play",
+        "plot",
+        "report",
+        "compare",
+        "reproduce",
+        "check",
+    ];
+    let lines = [&commands[..], &["list", "graph"]].concat();
+    let lines: Vec<String> = lines.iter().map(|command| format!("{command} --help")).collect();
+    let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+    insta::assert_snapshot!(sandbox.transcript(&lines));
 }
 
 #[test]

@@ -13,8 +13,10 @@ mod experiments;
 mod exports;
 mod folders;
 mod help;
+mod parts;
 mod pipes;
 mod play;
+mod report;
 #[cfg(unix)]
 mod resume;
 mod runs;

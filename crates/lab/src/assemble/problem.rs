@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use hwasp_core::Initial;
+use hwasp_core::{Initial, Law};
+use hwasp_tasks::hand::{PalmMotion, TendonHand, TendonHandSettings};
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
@@ -55,6 +56,23 @@ pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
             Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
         }
         Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => grasp(p, spec),
+    }
+}
+
+/// The law of the world in which one trains. That of the hand is there without the engine, too.
+pub(crate) fn law(spec: &Spec) -> Result<Law, AssembleError> {
+    let (Problem::ZGrasp(p) | Problem::SpatialGrasp(p)) = &spec.task.problem else {
+        return Ok(problem(spec)?.training.law);
+    };
+    let palm = palm(spec);
+    let settings = TendonHandSettings { palm, range: p.range.into(), ..TendonHandSettings::default() };
+    Ok(Law::new(TendonHand::new(&p.hand().transmission, &settings)?))
+}
+
+fn palm(spec: &Spec) -> PalmMotion {
+    match spec.task.problem {
+        Problem::SpatialGrasp(_) => PalmMotion::Spatial,
+        _ => PalmMotion::Vertical,
     }
 }
 
@@ -128,14 +146,10 @@ fn world(grasp: hwasp_mujoco::grasp::Grasp) -> World {
 #[cfg(feature = "mujoco")]
 fn grasp_settings(p: &GraspProblem, spec: &Spec) -> hwasp_mujoco::grasp::GraspSettings {
     use hwasp_mujoco::grasp::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
-    use hwasp_tasks::hand::PalmMotion;
 
     let starts = initial(spec);
     GraspSettings {
-        palm: match spec.task.problem {
-            Problem::SpatialGrasp(_) => PalmMotion::Spatial,
-            _ => PalmMotion::Vertical,
-        },
+        palm: palm(spec),
         hand: p.hand(),
         range: p.range.into(),
         initial: std::array::from_fn(|i| starts[i]),

@@ -54,6 +54,11 @@ impl Contender {
 
     /// Its label without what a folder should not be called.
     pub(super) fn folder_name(&self) -> String {
-        self.label.chars().map(|c| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '_' }).collect()
+        folder_name(&self.label)
     }
+}
+
+/// A label without what a folder should not be called.
+pub(super) fn folder_name(label: &str) -> String {
+    label.chars().map(|c| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '_' }).collect()
 }

@@ -2,7 +2,7 @@
 
 use hwasp_core::Stream;
 use rand::SeedableRng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::CellResult;
 use crate::metrics::MetricsTable;
@@ -13,7 +13,7 @@ use crate::train::TRAILING;
 const RESAMPLES: [u8; 32] = *b"bootstrap of hwasp's comparisons";
 
 /// An interquartile mean over seeds with its 95 % bootstrap interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// The interquartile mean.
     pub iqm: f64,
@@ -33,7 +33,7 @@ impl Figure {
 }
 
 /// When a threshold was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reached {
     /// Seeds that reached it.
     pub seeds: usize,
@@ -42,7 +42,7 @@ pub struct Reached {
 }
 
 /// What one method reached.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodFigures {
     /// The method.
     pub label: String,
@@ -109,7 +109,7 @@ impl MethodFigures {
 
 /// How probably one method is better than another: the share of pairs of seeds in which it is, ties counted half
 /// (Agarwal et al. 2021, section 4.3), with the 95 % interval of a bootstrap that resamples both.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// The one.
     pub method: String,

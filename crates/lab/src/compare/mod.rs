@@ -7,6 +7,7 @@ mod contender;
 mod figures;
 mod report;
 mod reproduce;
+mod saved;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,8 +17,10 @@ use thiserror::Error;
 
 pub use contender::Contender;
 pub use figures::{Figure, MethodFigures, Pair, Reached};
+pub(crate) use report::COMPARISON;
 pub use report::Comparison;
 pub use reproduce::{FIGURES, PaperFigure};
+pub(crate) use saved::SavedComparison;
 
 use crate::assemble::{AssembleError, Assembly};
 use crate::metrics::MetricsTable;

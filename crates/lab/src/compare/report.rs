@@ -4,15 +4,18 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::figures::{Figure, MethodFigures, Pair, default_threshold};
 use super::{CellResult, CompareError};
 use crate::plot::{Band, Curve, PlotOptions, XAxis, curves, write_plot};
 use crate::run_folder::io_error;
 
+/// The figures as JSON.
+pub(crate) const COMPARISON: &str = "comparison.json";
+
 /// The figures of all methods.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The experiment.
     pub experiment: String,
@@ -143,7 +146,7 @@ impl Comparison {
         write("table.md", self.markdown())?;
         write("table.csv", self.csv())?;
         // Figures are finite and keys are texts: this cannot fail.
-        write("comparison.json", serde_json::to_string_pretty(self).unwrap_or_default() + "\n")?;
+        write(COMPARISON, serde_json::to_string_pretty(self).unwrap_or_default() + "\n")?;
         for (name, x_axis) in [("curves.svg", XAxis::EnvSteps), ("time.svg", XAxis::WallClock)] {
             let runs: Vec<Curve> =
                 cells.iter().map(|cell| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0)).collect();

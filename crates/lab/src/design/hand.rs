@@ -127,6 +127,11 @@ impl HandReport {
         })
     }
 
+    /// The points of its picture.
+    pub(crate) fn chart(&self) -> &[ClosingPoint] {
+        &self.chart
+    }
+
     /// The picture of free closing.
     pub fn closing_plot(&self, title: &str) -> Plot {
         closing_plot(&self.chart, self.tension_limit, title)

@@ -2,18 +2,45 @@
 
 use hwasp_tasks::hand::{ClosingPoint, FreeClosing};
 
-use super::draw::{Entry, Page, picture};
+use super::draw::{Entry, Page, one_by_one, picture};
 use super::panel::{Panel, SECOND_ROUND};
 use super::series::{Line, Shape};
-use super::{PanelText, Plot};
+use super::{PanelPlots, PanelText, Plot};
 
 /// Places of the legend, which are colours: the distal joints have those of their digits in the second, broken round.
 const THUMB: usize = 0;
 const FINGER: usize = 1;
 const ALL: usize = 6;
 
+/// What the dashes are.
+const LIMIT: &str = "the motor's limit";
+const EXPLANATION: &str = "without gravity and object; angles: full lines are proximal joints, broken ones distal joints; \
+                           0 is open";
+
 /// Draws free closing up to the last of the `points`, with the most that the tendons pull together, N.
 pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) -> Plot {
+    let page = Page {
+        title,
+        untitled: "free closing",
+        reference: LIMIT,
+        explanation: EXPLANATION.to_owned(),
+        ..Page::default()
+    };
+    Plot { svg: picture(&panels(points, tension_limit), &entries(), &page), notes: Vec::new() }
+}
+
+/// The same as two small pictures, and what their lines mean.
+pub(crate) fn closing_panels(points: &[ClosingPoint], tension_limit: f64) -> PanelPlots {
+    let panels = one_by_one(panels(points, tension_limit).into(), &entries(), LIMIT);
+    PanelPlots { panels, explanation: EXPLANATION.to_owned(), notes: Vec::new() }
+}
+
+fn entries() -> [Entry<'static>; 3] {
+    let entry = |place, label| Entry { place, label, runs: 1 };
+    [entry(THUMB, "thumb"), entry(FINGER, "each finger"), entry(ALL, "the three tendons together")]
+}
+
+fn panels(points: &[ClosingPoint], tension_limit: f64) -> [Panel; 2] {
     let line = |value: &dyn Fn(&ClosingPoint) -> f64| {
         let smooth = points.iter().map(|p| (1e3 * p.travel, value(p))).collect();
         Some(Shape::Single(Line { raw: Vec::new(), smooth }))
@@ -46,19 +73,8 @@ pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) ->
         optimum,
     };
     let wound = "motor travel (mm)";
-    let panels = [
+    [
         Panel::new(text("joint angle", "deg", None), wound, angles),
         Panel::new(text("tension", "N", Some(tension_limit)), wound, tensions),
-    ];
-    let entry = |place, label| Entry { place, label, runs: 1 };
-    let entries = [entry(THUMB, "thumb"), entry(FINGER, "each finger"), entry(ALL, "the three tendons together")];
-    let page = Page {
-        title,
-        untitled: "free closing",
-        reference: "the motor's limit",
-        explanation: "without gravity and object; angles: full lines are proximal joints, broken ones distal joints; \
-                      0 is open"
-            .to_owned(),
-    };
-    Plot { svg: picture(&panels, &entries, &page), notes: Vec::new() }
+    ]
 }

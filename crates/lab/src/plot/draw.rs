@@ -2,7 +2,7 @@
 
 use super::panel::{AREA, GREY, INK, MARGINS, OPTIMUM, Panel, Site, colour, left_margin, stroke};
 use super::svg::{Anchor, Svg, text_width};
-use super::{Band, PlotOptions};
+use super::{Band, PanelPlot, PlotOptions};
 
 /// A label of the legend and how many runs share it.
 #[derive(Debug)]
@@ -22,10 +22,20 @@ pub(super) struct Page<'a> {
     pub(super) untitled: &'a str,
     /// What the legend calls the dashed horizontal lines.
     pub(super) reference: &'a str,
-    /// The line below everything.
+    /// The line below everything; empty for none.
     pub(super) explanation: String,
+    /// The plotting area of a panel, in pixels.
+    pub(super) area: (f64, f64),
 }
 
+impl Default for Page<'_> {
+    fn default() -> Self {
+        Self { title: "", untitled: "", reference: "optimum", explanation: String::new(), area: AREA }
+    }
+}
+
+/// The plotting area of a panel that stands by itself: with what is around it, as wide as the screen of a telephone.
+const SMALL_AREA: (f64, f64) = (280.0, 176.0);
 const TITLE_SIZE: f64 = 15.0;
 const LEGEND_SIZE: f64 = 11.5;
 const LEGEND_ROW: f64 = 19.0;
@@ -34,7 +44,7 @@ const SWATCH: f64 = 24.0;
 /// Draws everything.
 pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) -> String {
     let ((label_at, left), (top, right, bottom)) = (left_margin(panels), MARGINS);
-    let cell = (left + AREA.0 + right, top + AREA.1 + bottom);
+    let cell = (left + page.area.0 + right, top + page.area.1 + bottom);
     let rows = Rows::of(panels.len());
     let width = cell.0 * rows.columns as f64;
     let reach = width - left - 12.0;
@@ -43,7 +53,7 @@ pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) 
     let title_end = if title.is_empty() { 8.0 } else { 32.0 };
     let panels_start = title_end + legend.height() + 6.0;
     let panels_end = panels_start + cell.1 * rows.count as f64;
-    let height = panels_end + 20.0;
+    let height = if page.explanation.is_empty() { panels_end } else { panels_end + 20.0 };
 
     let mut svg = Svg::new(width, height, if title.is_empty() { page.untitled } else { &title });
     if !title.is_empty() {
@@ -53,11 +63,25 @@ pub(super) fn picture(panels: &[Panel], entries: &[Entry<'_>], page: &Page<'_>) 
     for (place, panel) in panels.iter().enumerate() {
         let (row, column, cells) = rows.site(place);
         let corner = (column as f64 * cell.0 + left, row as f64 * cell.1 + panels_start + top);
-        let area = (AREA.0 + (cells - 1) as f64 * cell.0, AREA.1);
+        let area = (page.area.0 + (cells - 1) as f64 * cell.0, page.area.1);
         panel.draw(&mut svg, Site { corner, area, label_at });
     }
-    svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &page.explanation);
+    if !page.explanation.is_empty() {
+        svg.text((left, panels_end + 8.0), 10.0, Anchor::Start, GREY, &page.explanation);
+    }
     svg.finish()
+}
+
+/// Draws each panel as a small picture, with what is measured above it, where there is room for long names.
+pub(super) fn one_by_one(panels: Vec<Panel>, entries: &[Entry<'_>], reference: &str) -> Vec<PanelPlot> {
+    let draw = |mut panel: Panel| {
+        let (label, unit) = (std::mem::take(&mut panel.text.label), std::mem::take(&mut panel.text.unit));
+        let title = if unit.is_empty() { label.clone() } else { format!("{label} ({unit})") };
+        let page = Page { title: &title, reference, area: SMALL_AREA, ..Page::default() };
+        let svg = picture(std::slice::from_ref(&panel), entries, &page);
+        PanelPlot { label, svg }
+    };
+    panels.into_iter().map(draw).collect()
 }
 
 /// How panels are arranged.

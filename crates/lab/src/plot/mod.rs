@@ -4,24 +4,34 @@
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
 //! smoothed. The picture is SVG text; a PNG is that same SVG drawn with an embedded font.
 //!
-//! [`closing_plot`] draws the closing chart of a hand with the same panels.
+//! [`closing_plot`] draws the closing chart of a hand with the same panels, [`tornado_plot`] what errors of a design's parameters do.
+//! [`curve_panels`] draws each panel as a picture of its own, for pages that arrange them by the width of their reader's screen.
 
 mod axis;
+mod bars;
 mod closing;
 mod draw;
+mod intervals;
 pub(crate) mod output;
 mod panel;
 mod series;
 pub(crate) mod svg;
+mod tornado;
+mod trace;
 
 use crate::metrics::{MetricsRow, MetricsTable};
 use crate::stats::StatsError;
 use std::path::PathBuf;
 use thiserror::Error;
 
+pub(crate) use bars::bars;
+pub(crate) use closing::closing_panels;
 pub use closing::closing_plot;
+pub(crate) use intervals::{IntervalRow, intervals};
 pub use output::{render_png, write_plot};
 pub use series::Note;
+pub use tornado::tornado_plot;
+pub(crate) use trace::trace;
 
 /// The column of the return, whose panel comes first.
 pub const RETURN: &str = "discounted_return";
@@ -207,53 +217,93 @@ pub enum PlotError {
     },
 }
 
+/// One panel as a picture of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanelPlot {
+    /// What is measured, such as `total stiffness`.
+    pub label: String,
+    /// The SVG document.
+    pub svg: String,
+}
+
+/// The panels of runs, one by one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanelPlots {
+    /// The panels, that of the return first.
+    pub panels: Vec<PanelPlot>,
+    /// What lines and bands mean.
+    pub explanation: String,
+    /// What the pictures do not show.
+    pub notes: Vec<Note>,
+}
+
 /// Draws the runs: one panel for the discounted return and one for each design total, one colour per label.
 pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> {
-    if runs.is_empty() {
-        return Err(PlotError::NoRuns);
+    let Drawn { panels, entries, explanation, notes } = Drawn::new(runs, options)?;
+    let page = draw::Page { title: &options.title, untitled: "learning curves", explanation, ..draw::Page::default() };
+    Ok(Plot { svg: draw::picture(&panels, &entries, &page), notes })
+}
+
+/// Draws the same panels, each as a small picture of its own without a title; with a legend where there are several labels.
+pub fn curve_panels(runs: &[Curve], options: &PlotOptions) -> Result<PanelPlots, PlotError> {
+    let Drawn { panels, mut entries, explanation, notes } = Drawn::new(runs, options)?;
+    if entries.len() == 1 {
+        entries.clear();
     }
-    if runs.len() > MOST_RUNS {
-        return Err(PlotError::Runs(runs.len()));
-    }
-    if !(1..=LONGEST_WINDOW).contains(&options.window) {
-        return Err(PlotError::Window(options.window));
-    }
-    // Labels and columns in the order in which they are first seen.
-    let mut groups: Vec<Vec<&Curve>> = Vec::new();
-    let mut columns = vec![RETURN];
-    for run in runs {
-        match groups.iter_mut().find(|group| group[0].label == run.label) {
-            Some(group) => group.push(run),
-            None => groups.push(vec![run]),
+    Ok(PanelPlots { panels: draw::one_by_one(panels, &entries, draw::Page::default().reference), explanation, notes })
+}
+
+/// What is to be drawn.
+struct Drawn<'r> {
+    panels: Vec<panel::Panel>,
+    entries: Vec<draw::Entry<'r>>,
+    explanation: String,
+    notes: Vec<Note>,
+}
+
+impl<'r> Drawn<'r> {
+    fn new(runs: &'r [Curve], options: &PlotOptions) -> Result<Self, PlotError> {
+        if runs.is_empty() {
+            return Err(PlotError::NoRuns);
         }
-        for (name, _) in &run.totals {
-            if !columns.contains(&name.as_str()) {
-                columns.push(name);
+        if runs.len() > MOST_RUNS {
+            return Err(PlotError::Runs(runs.len()));
+        }
+        if !(1..=LONGEST_WINDOW).contains(&options.window) {
+            return Err(PlotError::Window(options.window));
+        }
+        // Labels and columns in the order in which they are first seen.
+        let mut groups: Vec<Vec<&Curve>> = Vec::new();
+        let mut columns = vec![RETURN];
+        for run in runs {
+            match groups.iter_mut().find(|group| group[0].label == run.label) {
+                Some(group) => group.push(run),
+                None => groups.push(vec![run]),
+            }
+            for (name, _) in &run.totals {
+                if !columns.contains(&name.as_str()) {
+                    columns.push(name);
+                }
             }
         }
+        if columns.len() > MOST_PANELS {
+            return Err(PlotError::Panels(columns.len()));
+        }
+        let mut notes = Vec::new();
+        let mut panels = Vec::new();
+        for column in columns {
+            let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));
+            panels.push(panel::Panel::new(
+                text_of(column, options),
+                options.x_axis.label(),
+                shapes.collect::<Result<_, _>>()?,
+            ));
+        }
+        let entry =
+            |(place, group): (usize, &Vec<&'r Curve>)| draw::Entry { place, label: &group[0].label, runs: group.len() };
+        let explanation = draw::explanation(&panels, options);
+        Ok(Self { panels, entries: groups.iter().enumerate().map(entry).collect(), explanation, notes })
     }
-    if columns.len() > MOST_PANELS {
-        return Err(PlotError::Panels(columns.len()));
-    }
-    let mut notes = Vec::new();
-    let mut panels = Vec::new();
-    for column in columns {
-        let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));
-        panels.push(panel::Panel::new(
-            text_of(column, options),
-            options.x_axis.label(),
-            shapes.collect::<Result<_, _>>()?,
-        ));
-    }
-    let legend: Vec<draw::Entry<'_>> =
-        groups.iter().enumerate().map(|(place, g)| draw::Entry { place, label: &g[0].label, runs: g.len() }).collect();
-    let page = draw::Page {
-        title: &options.title,
-        untitled: "learning curves",
-        reference: "optimum",
-        explanation: draw::explanation(&panels, options),
-    };
-    Ok(Plot { svg: draw::picture(&panels, &legend, &page), notes })
 }
 
 /// The panel's text: as given, or the column's own name without underscores.

@@ -14,7 +14,7 @@ pub(super) const MARGINS: (f64, f64, f64) = (8.0, 50.0, 46.0);
 /// From the axis to its text, if the labels of the ticks leave room for it.
 const LABEL_AT: f64 = 56.0;
 /// The size of the ticks' labels, how far they are from the axis, and the least between them and its text.
-const TICK: (f64, f64, f64) = (11.0, 7.0, 8.0);
+pub(super) const TICK: (f64, f64, f64) = (11.0, 7.0, 8.0);
 /// Room left of the baseline of the axis' text.
 const LABEL_ROOM: f64 = 18.0;
 
@@ -30,10 +30,14 @@ pub(super) struct Site {
 }
 
 /// How far the text of the vertical axis is from it, for the widest label of a tick among the panels, and the room that
-/// both take.
+/// both take; without a text only the ticks'.
 pub(super) fn left_margin(panels: &[Panel]) -> (f64, f64) {
     let widest = panels.iter().map(Panel::widest_label).fold(0.0, f64::max);
-    let label_at = LABEL_AT.max(TICK.1 + widest + TICK.2);
+    let ticks = TICK.1 + widest + TICK.2;
+    if panels.iter().all(|panel| panel.text.label.is_empty()) {
+        return (ticks, ticks);
+    }
+    let label_at = LABEL_AT.max(ticks);
     (label_at, label_at + LABEL_ROOM)
 }
 
@@ -41,8 +45,8 @@ pub(super) const INK: &str = "#262626";
 pub(super) const GREY: &str = "#666666";
 /// Dashes of a known optimum.
 pub(super) const OPTIMUM: &str = "stroke=\"#262626\" stroke-width=\"1.1\" stroke-dasharray=\"5 3\"";
-const GRID_LINE: &str = "stroke=\"#e6e6e6\" stroke-width=\"0.8\"";
-const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
+pub(super) const GRID_LINE: &str = "stroke=\"#e6e6e6\" stroke-width=\"0.8\"";
+pub(super) const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
 
 /// Okabe and Ito's palette without its yellow, told apart by every common kind of colour vision.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
@@ -179,6 +183,9 @@ impl Frame<'_> {
         svg.line((left, bottom), (right, bottom), FRAME);
         let middle = (left + area.0 / 2.0, bottom + 35.0);
         svg.text(middle, 12.0, Anchor::Middle, INK, x_label);
+        if text.label.is_empty() {
+            return;
+        }
         let unit = if text.unit.is_empty() { String::new() } else { format!(" ({})", text.unit) };
         svg.upward_text((left - label_at, top + area.1 / 2.0), 12.0, INK, &format!("{}{unit}", text.label));
     }

@@ -15,7 +15,7 @@ use thiserror::Error;
 
 pub use self::provenance::Provenance;
 pub use self::saved::SavedRun;
-pub(crate) use self::saved::saved_spec;
+pub(crate) use self::saved::{saved_json, saved_metrics, saved_provenance, saved_spec, saved_summary};
 pub(crate) use self::writer::told;
 pub use self::writer::{Keeping, Resumed, RunFolder};
 use crate::assemble::AssembleError;
@@ -42,6 +42,12 @@ pub enum RunError {
         path: PathBuf,
         /// What it lacks.
         file: &'static str,
+    },
+    /// It is neither a run folder nor a comparison.
+    #[error("{path} is neither a run nor a comparison: it has neither {EXPERIMENT} nor comparison.json")]
+    Nothing {
+        /// The folder.
+        path: PathBuf,
     },
     /// A run that has not come to its end.
     #[error("{path} has no {file}: the training did not finish, or the file was removed")]

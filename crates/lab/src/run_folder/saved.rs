@@ -5,7 +5,12 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{EXPERIMENT, LARGEST_SUMMARY, METRICS, POLICY, RunError, SUMMARY, encode, io_error, read_limited};
+use serde::de::DeserializeOwned;
+
+use super::{
+    EXPERIMENT, LARGEST_SUMMARY, METRICS, POLICY, PROVENANCE, Provenance, RunError, SUMMARY, encode, io_error,
+    read_limited,
+};
 use crate::assemble::Assembly;
 use crate::checkpoint::{CheckpointStore, experiment_hash};
 use crate::files::Disk;
@@ -64,13 +69,7 @@ impl SavedRun {
 
     /// Its figures.
     pub fn summary(&self) -> Result<Summary, RunError> {
-        let path = self.path.join(SUMMARY);
-        if !path.is_file() {
-            return Err(RunError::Unfinished { path: self.path.clone(), file: SUMMARY });
-        }
-        let bytes = read_limited(&path, LARGEST_SUMMARY)?;
-        let decode = |e: serde_json::Error| RunError::Decode { path, message: e.to_string() };
-        serde_json::from_slice(&bytes).map_err(decode)
+        saved_summary(&self.path)
     }
 
     /// Its learning curve, labelled with experiment and method.
@@ -83,9 +82,7 @@ impl SavedRun {
 
     /// Its learning curve as a table.
     pub fn metrics(&self) -> Result<MetricsTable, RunError> {
-        let path = self.path.join(METRICS);
-        let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
-        MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
+        saved_metrics(&self.path)
     }
 
     /// Axis texts, units and known optima for its picture.
@@ -105,4 +102,32 @@ pub(crate) fn saved_spec(path: &Path, assignments: &[String]) -> Result<Spec, Ru
     let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
     let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
     Ok(spec::resolve(layers, None)?)
+}
+
+/// The figures of a run folder.
+pub(crate) fn saved_summary(run: &Path) -> Result<Summary, RunError> {
+    let summary = saved_json(&run.join(SUMMARY))?;
+    summary.ok_or_else(|| RunError::Unfinished { path: run.to_owned(), file: SUMMARY })
+}
+
+/// The learning curve of a run folder.
+pub(crate) fn saved_metrics(run: &Path) -> Result<MetricsTable, RunError> {
+    let path = run.join(METRICS);
+    let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
+    MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
+}
+
+/// Where a run came from, if its folder says so.
+pub(crate) fn saved_provenance(run: &Path) -> Result<Option<Provenance>, RunError> {
+    saved_json(&run.join(PROVENANCE))
+}
+
+/// What a file holds as JSON; none where there is no such file.
+pub(crate) fn saved_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunError> {
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let bytes = read_limited(path, LARGEST_SUMMARY)?;
+    let decode = |e: serde_json::Error| RunError::Decode { path: path.to_owned(), message: e.to_string() };
+    serde_json::from_slice(&bytes).map(Some).map_err(decode)
 }

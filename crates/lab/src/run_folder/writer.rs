@@ -130,7 +130,7 @@ impl RunFolder {
     fn new(path: &Path, spec: &Spec, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         let lock = RunLock::take(path)?;
         let experiment = spec.to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
-        let about = "# The experiment as it was run, every setting resolved. `hwasp train` on this file repeats it.\n";
+        let about = "# The experiment as it was run, every setting resolved. `hwasp train` on this file repeats it, if it began afresh.\n";
         let head =
             [(EXPERIMENT, format!("{about}{experiment}").into_bytes()), (PROVENANCE, json(PROVENANCE, provenance)?)];
         let store = CheckpointStore::new(path, Arc::clone(&keeping.files), experiment_hash(&experiment));
@@ -244,7 +244,7 @@ impl RunFolder {
     }
 
     /// Writes a checkpoint, and before it the rows that belong to it.
-    fn keep(&mut self, checkpoint: &Checkpoint) -> Result<(), RunError> {
+    pub(crate) fn keep(&mut self, checkpoint: &Checkpoint) -> Result<(), RunError> {
         self.stand()?;
         if let Some(table) = &mut self.table {
             table.sync(&*self.keeping.files)?;

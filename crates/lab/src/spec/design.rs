@@ -51,6 +51,16 @@ pub struct InitialValue {
     only: bool,
 }
 
+impl InitialSpec {
+    /// Every group at a value of its own, SI, in their order.
+    pub(crate) fn at(groups: &[GroupSpec], values: &[f64]) -> Self {
+        let only = groups.len() == 1;
+        let value =
+            |(g, &value): (&GroupSpec, &f64)| InitialValue { group: g.name, value, dimension: g.dimension, only };
+        Self::Values(groups.iter().zip(values).map(value).collect())
+    }
+}
+
 /// Parameters that sit elsewhere than the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlacedRange {

@@ -51,6 +51,9 @@ pub use task::{
 };
 pub use train::{MOST_ROWS, TrainSpec};
 
+pub(crate) use fault::shorten;
+pub(crate) use suggest::nearest;
+
 use names::named;
 use section::{Reader, Section};
 use tree::{Node, Table, Value};

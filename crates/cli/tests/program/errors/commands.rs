@@ -59,6 +59,34 @@ pub(super) const CASES: &[Case] = &[
     case("A drawing in no format", Nothing, "hwasp graph reach --out law"),
     case("An export of no samples", Made(Sandbox::put_run), "hwasp export run --samples 0"),
     case("Printed parts of what has none", Made(Sandbox::put_run), "hwasp export run --json --stl"),
+    case("Parts of what is no hand", Made(Sandbox::put_run), "hwasp parts run"),
+    case("A catalogue that is not there", Made(Sandbox::put_run), "hwasp parts run --catalogue springs.csv"),
+    case(
+        "A catalogue with wrong rows",
+        Made(|s| {
+            s.put_run();
+            s.write(
+                "springs.csv",
+                "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm\nT1,0.4,5.3,8.25,90,10\nT1,0.4,5.3,8.25,90,10\nT2,0.4,5.3,8.25,90\n\
+                 T3,\"0,4\",5.3,8.25,90,10\nT4,4,5.3,8.25,90,10\n",
+            );
+        }),
+        "hwasp parts run --catalogue springs.csv",
+    ),
+    case(
+        "A catalogue with columns of its own",
+        Made(|s| {
+            s.put_run();
+            s.write("springs.csv", "part,wire,outer_mm,turns,leg_angle_deg,leg_mm\nT1,0.4,5.3,8.25,90,10\n");
+        }),
+        "hwasp parts run --catalogue springs.csv",
+    ),
+    case("A workshop with a misspelt axle", Made(Sandbox::put_run), "hwasp parts run --bench axel='3 mm'"),
+    case("A workshop without units", Made(Sandbox::put_run), "hwasp parts run --bench axle=3"),
+    case("Holes that do not go round", Made(Sandbox::put_run), "hwasp parts run --bench hole_pitch='17 deg'"),
+    case("An error of what is not designed", Made(Sandbox::put_run), "hwasp tolerances run --error radius='0.1 mm'"),
+    case("An error without a size", Made(Sandbox::put_run), "hwasp tolerances run --error gear"),
+    case("An error of nothing", Made(Sandbox::put_run), "hwasp tolerances run --error gear=0"),
     case("Films of what grasps nothing", Made(Sandbox::put_run), "hwasp play run"),
     case("Tendons of what has none", Made(Sandbox::put_run), "hwasp eval run --native-tendons"),
     case("A closing chart of what is no hand", Made(Sandbox::put_run), "hwasp design run --out pictures"),

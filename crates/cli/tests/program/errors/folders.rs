@@ -122,6 +122,28 @@ pub(super) const CASES: &[Case] = &[
     case("An export beside that of another run", run!(|s| put_manifest(s, EXPORTED)), "hwasp export run --out robot"),
     case("An export beside a damaged one", run!(|s| put_manifest(s, "{}")), "hwasp export run --out robot"),
     case("An export into a file", run!(|s| s.write("file", "")), "hwasp export run --out file").late(),
+    case("The report of an empty folder", Made(|s| fs::create_dir(s.path("empty")).unwrap()), "hwasp report empty"),
+    case("The report of a run that did not finish", Made(Sandbox::put_stopped_run), "hwasp report run"),
+    case(
+        "The report of a run with the figures of another",
+        run!(|s| s.replace("run/summary.json", "\"seed\": 0", "\"seed\": 7")),
+        "hwasp report run",
+    ),
+    case(
+        "The report of a run whose origin was damaged",
+        run!(|s| s.write("run/provenance.json", "[]")),
+        "hwasp report run",
+    ),
+    case(
+        "The report of a run whose parts were damaged",
+        run!(|s| {
+            fs::create_dir(s.path("run/build")).unwrap();
+            s.write("run/build/parts.json", "{\"experiment\": 1}");
+        }),
+        "hwasp report run",
+    ),
+    case("The report of a run without its policy", run!(|s| remove(s, "run/policy.safetensors")), "hwasp report run"),
+    case("A report that is no page", Made(Sandbox::put_run), "hwasp report run --out report.pdf"),
     case("A comparison in a run folder", Made(Sandbox::put_run), "hwasp compare reach --out run"),
     case("A comparison in a file", Made(|s| s.write("file", "")), "hwasp compare reach --out file"),
     case(

@@ -1,0 +1,82 @@
+//! `hwasp parts`.
+
+use std::path::Path;
+
+use hwasp_core::Executor;
+use hwasp_lab::parts::{
+    Bench, Catalogue, Judge, PARTS, PartsError, PartsWorth, SHEET, TUNED, Tuning, TuningFolder, snap,
+};
+use hwasp_lab::{Provenance, RunError};
+
+use super::train::into_folder;
+use super::{executor, saved_run, stop_on_signal, typed};
+use crate::args::PartsArgs;
+use crate::failure::Failure;
+use crate::{log, output, report};
+
+pub(crate) fn run(args: &PartsArgs) -> Result<(), Failure> {
+    let catalogue =
+        args.catalogue.as_deref().map_or_else(Catalogue::built_in, Catalogue::open).map_err(Failure::input)?;
+    let mut bench = Bench::default();
+    args.bench.iter().try_for_each(|given| bench.set(given)).map_err(Failure::input)?;
+    let saved = saved_run(&args.run, &[])?;
+    let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
+    let asked = args.held_out.asked(&assembly.spec().train);
+    let snapped = snap(assembly, &params, &catalogue, &bench).map_err(failure)?;
+    let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
+
+    // What cannot be begun is known before the work begins.
+    let tuning = args.fine_tune.map(|steps| Tuning::new(assembly, &params, &snapped.built, steps, asked));
+    let tuning = tuning.transpose().map_err(failure)?;
+    let path = folder.join(TUNED);
+    let provenance = Provenance::new(typed(), args.held_out.threads.get(), assembly.spec().seed);
+    let tuning = tuning.map(|tuning| Ok((tuning.folder(&path, provenance)?, tuning))).transpose();
+    let tuning = tuning.map_err(|error: RunError| Failure::input(error))?;
+
+    let executor = executor(args.held_out.threads)?;
+    output::remark(&format!("simulating the hand as trained and on its parts, {} episodes each", asked.0));
+    let judge = snapped.judge(assembly, &params, asked, &*executor).map_err(failure)?;
+    let worth = match tuning {
+        None => judge.worth().clone(),
+        Some((there, tuning)) => tuned(judge, there, &tuning, &path, &*executor)?,
+    };
+    let list = snapped.list(assembly, worth);
+    list.write(&folder)?;
+    let mut text = report::parts::parts(&list);
+    text.push_str(&format!("\n  {}: {PARTS}, {SHEET}", folder.display()));
+    text.push_str(if list.worth.tuned.is_some() { ", tuned/\n" } else { "\n" });
+    Ok(output::print(&text)?)
+}
+
+/// Trains the controller further, unless that is done already, and simulates it.
+fn tuned(
+    judge: Judge<'_>,
+    there: TuningFolder,
+    tuning: &Tuning,
+    path: &Path,
+    executor: &dyn Executor,
+) -> Result<PartsWorth, Failure> {
+    let spec = tuning.assembly.spec();
+    let params = match there {
+        TuningFolder::Finished(params) => {
+            output::remark(&format!("{} holds this training already", path.display()));
+            params
+        }
+        TuningFolder::Open(mut folder, from) => {
+            log::to_file(&path.join("train.log"));
+            output::remark(&report::beginning(spec, path, false, None));
+            let stop = stop_on_signal()?;
+            let (trained, _) = into_folder(&tuning.assembly, &mut folder, Some(&from), executor, (None, false), &stop)?;
+            folder.remove_checkpoints()?;
+            trained.params
+        }
+    };
+    judge.tuned(&params, TUNED, spec.train.env_steps).map_err(failure)
+}
+
+fn failure(error: PartsError) -> Failure {
+    match error {
+        PartsError::Evaluate(_) | PartsError::Tuning(_) => error.into(),
+        _ => Failure::input(error),
+    }
+}

@@ -1,0 +1,22 @@
+//! `hwasp report`.
+
+use hwasp_lab::report::report;
+
+use super::{run_folder, write_out};
+use crate::args::ReportArgs;
+use crate::failure::Failure;
+use crate::output;
+
+pub(crate) fn run(args: &ReportArgs) -> Result<(), Failure> {
+    let folder = run_folder(&args.folder)?;
+    let out = args.out.clone().unwrap_or_else(|| folder.join("report.html"));
+    // A page under another name would be shown as text.
+    let extension = out.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    if !matches!(extension.as_deref(), Some("html" | "htm")) {
+        let text = "names no page: end it in .html";
+        return Err(Failure::input(format!("`{}` {text}", out.display())));
+    }
+    let html = report(folder).map_err(Failure::input)?;
+    write_out(&out, &html)?;
+    Ok(output::print(&format!("{}\n", out.display()))?)
+}

@@ -1,0 +1,30 @@
+//! `hwasp tolerances`.
+
+use hwasp_lab::EvaluateError;
+use hwasp_lab::tolerances::{PICTURES, TOLERANCES, tolerances};
+
+use super::{executor, saved_run};
+use crate::args::TolerancesArgs;
+use crate::failure::Failure;
+use crate::progress::Counter;
+use crate::{output, report};
+
+pub(crate) fn run(args: &TolerancesArgs) -> Result<(), Failure> {
+    let saved = saved_run(&args.run, &[])?;
+    let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
+    let errors = assembly.manufacturing_errors(&params, &args.error).map_err(Failure::input)?;
+    let asked = args.held_out.asked(&assembly.spec().train);
+    let executor = executor(args.held_out.threads)?;
+    let mut counter = Counter::new("designs simulated");
+    let found = tolerances(assembly, &params, &errors, asked, &*executor, &mut |done, all| counter.tell(done, all));
+    counter.finish();
+    let found = found.map_err(|error| match error {
+        EvaluateError::Assemble(error) => Failure::input(error),
+        error => error.into(),
+    })?;
+    let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
+    found.write(&folder)?;
+    let mut text = report::parts::tolerances(&found);
+    text.push_str(&format!("\n  {}: {TOLERANCES}, {}\n", folder.display(), PICTURES.join(", ")));
+    Ok(output::print(&text)?)
+}

@@ -1,0 +1,115 @@
+//! The document around the sections.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest, Sha256};
+
+const STYLE: &str = include_str!("style.css");
+const PLAYER: &str = include_str!("player.js");
+
+/// A chapter.
+pub(super) struct Section {
+    /// What links call it.
+    pub(super) id: &'static str,
+    /// Its heading.
+    pub(super) title: &'static str,
+    /// What it says, headings from the third level on.
+    pub(super) body: Markup,
+}
+
+/// A figure to begin with.
+pub(super) struct KeyFigure {
+    /// What it is of.
+    pub(super) label: String,
+    /// The figure.
+    pub(super) value: String,
+    /// What else is to be known of it; may be empty.
+    pub(super) note: String,
+}
+
+/// The whole document.
+pub(super) struct Page {
+    /// The main heading.
+    pub(super) title: String,
+    /// The line above it.
+    pub(super) kind: &'static str,
+    /// What it is about.
+    pub(super) lead: String,
+    /// The figures that matter most.
+    pub(super) figures: Vec<KeyFigure>,
+    /// The chapters.
+    pub(super) sections: Vec<Section>,
+}
+
+impl Page {
+    /// The document as text.
+    pub(super) fn html(self) -> String {
+        let policy = format!("default-src 'none'; style-src '{}'; script-src '{}'", hash(STYLE), hash(PLAYER));
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta http-equiv="Content-Security-Policy" content=(policy);
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    meta name="generator" content=(concat!("hwasp ", env!("CARGO_PKG_VERSION")));
+                    title { (self.title) " · hwasp report" }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    a.skip href="#content" { "Skip to the content" }
+                    header {
+                        p.kind { (self.kind) }
+                        h1 { (self.title) }
+                        @if !self.lead.is_empty() { p.lead { (self.lead) } }
+                        dl.figures {
+                            @for KeyFigure { label, value, note } in &self.figures {
+                                div { dt { (label) } dd.value { (value) } @if !note.is_empty() { dd.note { (note) } } }
+                            }
+                        }
+                    }
+                    nav aria-label="Sections" {
+                        ul { @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title) } } } }
+                    }
+                    main id="content" {
+                        @for Section { id, title, body } in &self.sections {
+                            section id=(id) aria-labelledby={ (id) "-title" } { h2 id={ (id) "-title" } { (title) } (body) }
+                        }
+                    }
+                    footer { p { "Made by " code { "hwasp report" } ", version " (env!("CARGO_PKG_VERSION")) "." } }
+                    script { (PreEscaped(PLAYER)) }
+                }
+            }
+        };
+        page.into_string() + "\n"
+    }
+}
+
+/// How a content security policy names what stands in the document itself.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_is_said_is_text() {
+        let evil = "</title></style><script>alert(1)</script>\"'&";
+        let figures = vec![KeyFigure { label: evil.into(), value: evil.into(), note: evil.into() }];
+        let sections = vec![Section { id: "one", title: "One", body: html! { p title=(evil) { (evil) } } }];
+        let page = Page { title: evil.into(), kind: "Run", lead: evil.into(), figures, sections };
+        let html = page.html();
+        assert_eq!(html.matches("<script").count(), 1, "{html}");
+        assert!(!html.contains("<script>alert") && html.contains("&lt;script&gt;alert(1)&lt;/script&gt;&quot;"));
+    }
+
+    /// As `openssl dgst -sha256 -binary | base64` has it.
+    #[test]
+    fn hashes_are_those_of_the_policy() {
+        assert_eq!(hash(""), "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
+    }
+}

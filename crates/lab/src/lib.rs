@@ -19,6 +19,7 @@ mod observer;
 pub mod play;
 pub mod plot;
 mod policy_file;
+pub mod project;
 mod replay;
 mod run_folder;
 mod search;

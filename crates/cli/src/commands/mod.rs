@@ -5,6 +5,7 @@ pub(crate) mod compare;
 pub(crate) mod design;
 pub(crate) mod eval;
 pub(crate) mod graph;
+pub(crate) mod init;
 pub(crate) mod list;
 pub(crate) mod play;
 pub(crate) mod plot;

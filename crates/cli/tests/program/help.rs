@@ -17,7 +17,7 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let lines = ["train", "eval", "design", "play", "plot", "compare", "reproduce", "check", "list", "graph"]
+    let lines = ["train", "eval", "design", "play", "plot", "compare", "reproduce", "check", "list", "graph", "init"]
         .map(|command| format!("{command} --help"));
     insta::assert_snapshot!(sandbox.transcript(&lines.each_ref().map(String::as_str)));
 }

@@ -14,6 +14,7 @@ mod folders;
 mod help;
 mod pipes;
 mod play;
+mod projects;
 #[cfg(unix)]
 mod resume;
 mod runs;

@@ -101,6 +101,8 @@ pub(crate) enum Command {
     List,
     /// Draw the law of an experiment as a computational graph
     Graph(GraphArgs),
+    /// Begin a project for a mechanism of your own: law, plant, task, experiment and tests, ready to train
+    Init(InitArgs),
 }
 
 impl Command {
@@ -482,6 +484,31 @@ pub(crate) struct ReproduceArgs {
     /// The folder; a part that is there is continued [default: runs/reproduce-FIGURE]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// The physics of a project.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum TemplateArg {
+    /// Physics written in Rust; no engine is needed
+    Plant,
+    /// Physics in the MuJoCo engine, from an MJCF file
+    Mjcf,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct InitArgs {
+    /// The folder of the project, empty or new
+    pub(crate) folder: PathBuf,
+    /// What its physics are
+    #[arg(long, value_enum, default_value_t = TemplateArg::Plant)]
+    pub(crate) template: TemplateArg,
+    /// Its name as a Rust package [default: the folder's]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// The checkout of hwasp that it is built with [default: the one that this program was built in, or else the repository on
+    /// the network]
+    #[arg(long, value_name = "CHECKOUT")]
+    pub(crate) path: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]

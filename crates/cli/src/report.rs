@@ -156,7 +156,7 @@ pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
          training    {} steps: {training}\n",
         spec.name,
         spec.method.name(),
-        spec.task.kind().name(),
+        spec.task.name(),
         if design == 1 { "" } else { "s" },
         policy.param_count(),
         shorten(policy.action_names()),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use hwasp_diff::{Program, Scalar};
 
-use crate::design::DesignSpace;
+use crate::design::{DesignError, DesignGroup, DesignSpace, Initial};
 
 /// The names of what goes into a law and what comes out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -95,6 +95,13 @@ impl Law {
             as_built: Arc::new(move |d| built.as_built(d)),
             trace: Arc::new(Traceable(hardware)),
         }
+    }
+
+    /// The same law whose parameters begin elsewhere: at one start for each group.
+    pub fn beginning(mut self, initial: &[Initial]) -> Result<Self, DesignError> {
+        let groups = self.design.groups().iter().zip(initial);
+        self.design = DesignSpace::new(groups.map(|(g, &initial)| DesignGroup { initial, ..g.clone() }).collect())?;
+        Ok(self)
     }
 
     /// The parameters.

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use hwasp_algos::{Learner, Ppo, Trpo};
 use hwasp_core::{
-    Anneal, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Policy, PolicySpec,
-    Purpose, Spread, stream,
+    Anneal, DesignError, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Policy,
+    PolicySpec, Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::hand::HandError;
@@ -19,7 +19,7 @@ use thiserror::Error;
 
 pub use self::learner::LearnerSettings;
 pub(crate) use self::problem::law;
-use self::problem::{initial, problem};
+use self::problem::problem;
 use crate::spec::{ActivationKind, Method, Place, Spec};
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
@@ -52,6 +52,9 @@ pub enum AssembleError {
         /// The problem.
         problem: &'static str,
     },
+    /// Where the design begins.
+    #[error(transparent)]
+    Design(#[from] DesignError),
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
@@ -117,6 +120,15 @@ pub struct Problems {
     pub deployment: World,
     /// The total of each design group that is best as built, where it is known, SI.
     pub optimum: Vec<Option<f64>>,
+}
+
+impl Problems {
+    /// A mechanism that works as it is trained: one world, whose best design is not known.
+    pub fn new(law: Law, make: impl MakeEnvironment + 'static) -> Self {
+        let optimum = vec![None; law.design().groups().len()];
+        let world = World { law, make: Arc::new(make) };
+        Self { training: world.clone(), deployment: world, optimum }
+    }
 }
 
 /// An experiment, ready to run.
@@ -195,7 +207,7 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
     // way through the squash and back would not.
     let space = law.design();
     let mut first = space.values(&space.sample_initial(&mut stream(spec.seed, Purpose::Design, 0, 0)));
-    let starts = initial(spec).into_iter().zip(space.groups()).flat_map(|(initial, g)| vec![initial; g.count]);
+    let starts = space.groups().iter().flat_map(|g| vec![g.initial; g.count]);
     for (first, initial) in first.iter_mut().zip(starts) {
         if let Initial::Value(value) = initial {
             *first = value;

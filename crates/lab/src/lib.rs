@@ -22,6 +22,7 @@ pub mod parts;
 pub mod play;
 pub mod plot;
 mod policy_file;
+pub mod project;
 mod replay;
 pub mod report;
 mod run_folder;

@@ -70,7 +70,7 @@ impl Summary {
         Self {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
-            task: spec.task.kind().name().to_owned(),
+            task: spec.task.name().to_owned(),
             seed: spec.seed,
             iterations: trained.iterations,
             env_steps: trained.env_steps,

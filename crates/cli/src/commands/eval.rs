@@ -22,7 +22,7 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
         error => error.into(),
     })?;
     if args.per_shape && evaluation.success.is_empty() {
-        let task = saved.assembly().spec().task.kind().name();
+        let task = saved.assembly().spec().task.name();
         output::remark(&format!("note: {task} knows neither success nor shapes"));
     }
     let text = if args.json {

@@ -14,5 +14,12 @@ pub(crate) fn run() -> Result<(), Failure> {
         let spec = spec::resolve(spec::load(name)?, None)?;
         let _ = writeln!(text, "{name:width$}  {}", spec.description);
     }
+    for own in spec::registered() {
+        let _ = writeln!(
+            text,
+            "{:width$}  a problem of this program: task.problem = \"{0}\" in an experiment file",
+            own.name()
+        );
+    }
     Ok(output::print(&text)?)
 }

@@ -16,6 +16,7 @@ mod help;
 mod parts;
 mod pipes;
 mod play;
+mod projects;
 mod report;
 #[cfg(unix)]
 mod resume;

@@ -56,6 +56,7 @@ pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
             Ok(Problems { training: world.clone(), deployment: world, optimum: vec![None] })
         }
         Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => grasp(p, spec),
+        Problem::Own(own) => own_problem(own.built(), spec),
     }
 }
 
@@ -76,9 +77,28 @@ fn palm(spec: &Spec) -> PalmMotion {
     }
 }
 
+/// A problem that the program brings along, with the horizon and the start that the experiment asks for.
+fn own_problem(built: &Problems, spec: &Spec) -> Result<Problems, AssembleError> {
+    let (horizon, initial) = (spec.task.horizon, initial(spec));
+    let world = |world: &World| -> Result<World, AssembleError> {
+        let make = Arc::clone(&world.make);
+        let law = match spec.design.initial {
+            InitialSpec::Law => world.law.clone(),
+            _ => world.law.clone().beginning(&initial)?,
+        };
+        let make = move |shorter: Option<usize>| make.make(Some(shorter.unwrap_or(horizon)));
+        Ok(World { law, make: Arc::new(make) })
+    };
+    Ok(Problems {
+        training: world(&built.training)?,
+        deployment: world(&built.deployment)?,
+        optimum: built.optimum.clone(),
+    })
+}
+
 #[cfg(not(feature = "mujoco"))]
 fn grasp(_: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
-    Err(AssembleError::NoEngine { problem: spec.task.kind().name() })
+    Err(AssembleError::NoEngine { problem: spec.task.name() })
 }
 
 #[cfg(feature = "mujoco")]
@@ -96,7 +116,7 @@ impl Assembly {
     /// The world in which the hand of this `design` (SI) moves by the engine's own tendons and springs, at the rate of the
     /// simulation, and the law has no say.
     pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
-        let problem = self.spec().task.kind().name();
+        let problem = self.spec().task.name();
         self.grasp_problem().map_err(|_| AssembleError::NoNative { problem })?;
         native(self, design)
     }
@@ -112,7 +132,7 @@ impl Assembly {
     pub(crate) fn grasp_problem(&self) -> Result<&GraspProblem, AssembleError> {
         match &self.spec().task.problem {
             Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings) => Ok(settings),
-            _ => Err(AssembleError::NoGrasp { problem: self.spec().task.kind().name() }),
+            _ => Err(AssembleError::NoGrasp { problem: self.spec().task.name() }),
         }
     }
 
@@ -130,7 +150,7 @@ impl Assembly {
 
 #[cfg(not(feature = "mujoco"))]
 fn native(assembly: &Assembly, _: &[f64]) -> Result<World, AssembleError> {
-    Err(AssembleError::NoEngine { problem: assembly.spec().task.kind().name() })
+    Err(AssembleError::NoEngine { problem: assembly.spec().task.name() })
 }
 
 #[cfg(feature = "mujoco")]
@@ -217,7 +237,8 @@ pub(super) fn initial(spec: &Spec) -> Vec<Initial> {
         let middle = Initial::Value(0.5 * (group.lo + group.hi));
         match &spec.design.initial {
             InitialSpec::Logit => Initial::Logit { half_width: spec.design.logit_half_width },
-            InitialSpec::Middle => middle,
+            // Where the law says, nobody asks.
+            InitialSpec::Middle | InitialSpec::Law => middle,
             InitialSpec::Values(values) => {
                 values.iter().find(|v| v.group == group.name).map_or(middle, |v| Initial::Value(v.value))
             }

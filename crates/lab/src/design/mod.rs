@@ -73,7 +73,7 @@ impl DesignReport {
             groups.push(GroupReport { name, group, position });
         }
         if let Some(name) = design.keys().next() {
-            return Err(format!("{name:?} is no group of {}", spec.task.kind().name()));
+            return Err(format!("{name:?} is no group of {}", spec.task.name()));
         }
         let hand = match &spec.task.problem {
             Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => {
@@ -86,7 +86,7 @@ impl DesignReport {
         Ok(Self {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
-            task: spec.task.kind().name().to_owned(),
+            task: spec.task.name().to_owned(),
             seed: spec.seed,
             groups,
             hand,

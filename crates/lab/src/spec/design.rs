@@ -11,7 +11,7 @@ use super::fault::{shorten, show};
 use super::names::named;
 use super::section::Section;
 use super::suggest::{listed, nearest};
-use super::task::{GroupSpec, TaskSpec};
+use super::task::{GroupSpec, Problem, TaskSpec};
 use super::tree::{Node, Value};
 use super::values::with_unit;
 
@@ -34,6 +34,8 @@ pub enum InitialSpec {
     Logit,
     /// In the middle of their limits.
     Middle,
+    /// Where the law of a problem of one's own says.
+    Law,
     /// The parameters of these groups at these values, others in the middle of their limits.
     Values(Vec<InitialValue>),
 }
@@ -80,7 +82,7 @@ pub struct PlacedRange {
 /// |---|---|---|---|
 /// | `placement` | hwasp: "graph", fixed: "fixed", else "action" | where the parameters sit | |
 /// | `placements` | none | where some of them sit: `{ "stiffness[0]" = "action", "stiffness[3..5]" = "fixed" }` (3 and 4), or a list of one place each | |
-/// | `initial` | "logit" | `logit`, `middle`, a quantity, or one for each group, `{ thumb_distal_radius = "6 mm" }`; groups left out begin in the middle | inside of the parameter's limits |
+/// | `initial` | "logit" (a problem of your own: "law") | `logit`, `middle`, `law` (as its law says), a quantity, or one for each group, `{ thumb_distal_radius = "6 mm" }`; groups left out begin in the middle | inside of the parameter's limits |
 /// | `logit_half_width` | 5.0 | half width of the uniform start before the squash | 0 to 20 |
 /// | `learning_rate_scale` | 1.0 | times the policy's learning rate (PPO) | 0 to 1000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -116,7 +118,7 @@ impl DesignSpec {
         };
         let spec = Self {
             placement: s.choice("placement", Place::ALL).unwrap_or(default),
-            initial: read_initial(&mut s, &groups),
+            initial: read_initial(&mut s, &groups, matches!(task.problem, Problem::Own(_))),
             logit_half_width: s.number("logit_half_width", 5.0, 0.0..=20.0),
             learning_rate_scale: s.number("learning_rate_scale", 1.0, 0.0..=1000.0),
             placements: read_placements(&mut s, &groups),
@@ -126,9 +128,12 @@ impl DesignSpec {
     }
 }
 
-fn read_initial(s: &mut Section<'_>, groups: &[GroupSpec]) -> InitialSpec {
-    let Some(node) = s.take("initial") else { return InitialSpec::Logit };
+fn read_initial(s: &mut Section<'_>, groups: &[GroupSpec], own: bool) -> InitialSpec {
+    let Some(node) = s.take("initial") else {
+        return if own { InitialSpec::Law } else { InitialSpec::Logit };
+    };
     match (&node.value, groups) {
+        (Value::Text(text), _) if text == "law" && own => InitialSpec::Law,
         (Value::Text(text), _) if text == "logit" => InitialSpec::Logit,
         (Value::Text(text), _) if text == "middle" => InitialSpec::Middle,
         (Value::Text(text), _) if !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.')) => {
@@ -286,6 +291,7 @@ impl Serialize for InitialSpec {
         match self {
             Self::Logit => serializer.serialize_str("logit"),
             Self::Middle => serializer.serialize_str("middle"),
+            Self::Law => serializer.serialize_str("law"),
             Self::Values(values) => match &values[..] {
                 [InitialValue { value, dimension, only: true, .. }] => {
                     serializer.serialize_str(&with_unit(*value, *dimension))

@@ -24,6 +24,7 @@ mod layers;
 mod learner;
 mod names;
 mod noise;
+mod own;
 mod quantity;
 mod search;
 mod section;
@@ -44,6 +45,7 @@ pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec, ViewpointKind
 pub use layers::{LONGEST_FILE, Layers};
 pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec, TrpoSpec};
 pub use noise::{EffortSpec, NoiseSpec, PerCommand};
+pub use own::{OwnError, OwnProblem, OwnTask, Setting, register, registered};
 pub use search::{ArsSpec, ArsVariant, CmaesSpec, Score, SearchSpec};
 pub use task::{
     BarProblem, GroupSpec, InterfaceKind, MOST_SEGMENTS, MOST_STEPS, MassSpringSpec, Problem, ProblemKind,

@@ -67,8 +67,11 @@ impl NoiseSpec {
         let command = s.each("command", commands, &fraction).unwrap_or_else(|| vec![0.3; commands]);
         let command_final = s.each("command_final", commands, &fraction).map(PerCommand);
         let in_graph = (0..task.groups().iter().map(|g| g.count).sum()).any(|i| design.place_of(i) == Place::Graph);
-        let (effort, effort_final) =
-            if in_graph { read_effort(&mut s, task) } else { (skim(&mut s, "effort"), skim(&mut s, "effort_final")) };
+        let (effort, effort_final) = if in_graph {
+            read_effort(&mut s, task)
+        } else {
+            (skim(&mut s, "effort", task), skim(&mut s, "effort_final", task))
+        };
         let spec = Self {
             command: PerCommand(command),
             command_final,
@@ -101,9 +104,9 @@ fn read_effort(s: &mut Section<'_>, task: &TaskSpec) -> (Option<EffortSpec>, Opt
 
 /// A key that says nothing here, because the effort is no action: a base table may have it for another method, whose
 /// effort may even have another unit. It still has to be a quantity.
-fn skim(s: &mut Section<'_>, key: &'static str) -> Option<EffortSpec> {
+fn skim(s: &mut Section<'_>, key: &'static str, task: &TaskSpec) -> Option<EffortSpec> {
     let node = s.take(key)?;
-    let any = [Dimension::Force, Dimension::Length, Dimension::Speed, Dimension::Torque];
+    let any = [Dimension::Force, Dimension::Length, Dimension::Speed, Dimension::Torque, task.effort_dimension()];
     let fits = match &node.value {
         Value::Text(text) => text == "none" || any.iter().any(|&d| parse_quantity(text, d).is_ok()),
         _ => false,

@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use super::grasp::GraspProblem;
 use super::names::named;
+use super::own::{OwnProblem, OwnTask, registered};
 use super::quantity;
 use super::section::Section;
+use super::suggest::listed;
 
 /// The most springs or bar segments of an experiment.
 pub const MOST_SEGMENTS: usize = 10_000;
@@ -57,7 +59,7 @@ named! {
 ///
 /// | key | default | meaning | limits |
 /// |---|---|---|---|
-/// | `problem` | required | `stiffness`, `bar-length`, `reach`, `pendulum`, `z-grasp` or `3d-grasp` | |
+/// | `problem` | required | `stiffness`, `bar-length`, `reach`, `pendulum`, `z-grasp`, `3d-grasp`, or [one of your own](own_mechanism.md) | |
 /// | `horizon` | 1000 (reach: 30, pendulum: 200, grasps: 500) | steps of an episode | 1 to 100 000 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TaskSpec {
@@ -85,6 +87,9 @@ pub enum Problem {
     /// The same, and the palm moves in space.
     #[serde(rename = "3d-grasp")]
     SpatialGrasp(GraspProblem),
+    /// One that the program brings along; it writes its own name.
+    #[serde(untagged)]
+    Own(OwnTask),
 }
 
 /// What both mass-spring problems have.
@@ -194,35 +199,46 @@ pub struct GroupSpec {
     pub hi: f64,
 }
 
+/// What `task.problem` may name.
+#[derive(Clone, Copy)]
+enum Chosen {
+    Kind(ProblemKind),
+    Own(&'static OwnProblem),
+}
+
 impl TaskSpec {
-    /// Which problem it is.
-    pub fn kind(&self) -> ProblemKind {
-        match self.problem {
+    /// What experiments call the problem.
+    pub fn name(&self) -> &'static str {
+        let kind = match &self.problem {
             Problem::Stiffness(_) => ProblemKind::Stiffness,
             Problem::BarLength(_) => ProblemKind::BarLength,
             Problem::Reach(_) => ProblemKind::Reach,
             Problem::Pendulum => ProblemKind::Pendulum,
             Problem::ZGrasp(_) => ProblemKind::ZGrasp,
             Problem::SpatialGrasp(_) => ProblemKind::SpatialGrasp,
-        }
+            Problem::Own(own) => return own.name(),
+        };
+        kind.name()
     }
 
     /// Numbers that the controller sees.
     pub fn observations(&self) -> usize {
-        match self.kind() {
-            ProblemKind::Reach => 1,
-            ProblemKind::Stiffness | ProblemKind::BarLength => 2,
-            ProblemKind::Pendulum => 3,
-            ProblemKind::ZGrasp | ProblemKind::SpatialGrasp => 11,
+        match &self.problem {
+            Problem::Reach(_) => 1,
+            Problem::Stiffness(_) | Problem::BarLength(_) => 2,
+            Problem::Pendulum => 3,
+            Problem::ZGrasp(_) | Problem::SpatialGrasp(_) => 11,
+            Problem::Own(own) => own.env().observation.len(),
         }
     }
 
     /// How many commands the controller gives.
     pub fn commands(&self) -> usize {
-        match self.kind() {
-            ProblemKind::Reach | ProblemKind::Stiffness | ProblemKind::BarLength | ProblemKind::Pendulum => 1,
-            ProblemKind::ZGrasp => 2,
-            ProblemKind::SpatialGrasp => 4,
+        match &self.problem {
+            Problem::Reach(_) | Problem::Stiffness(_) | Problem::BarLength(_) | Problem::Pendulum => 1,
+            Problem::ZGrasp(_) => 2,
+            Problem::SpatialGrasp(_) => 4,
+            Problem::Own(own) => own.env().command.len(),
         }
     }
 
@@ -232,6 +248,7 @@ impl TaskSpec {
             Problem::Reach(_) => Dimension::Speed,
             Problem::Pendulum | Problem::ZGrasp(_) | Problem::SpatialGrasp(_) => Dimension::Torque,
             Problem::BarLength(bar) if bar.interface == InterfaceKind::Rigid => Dimension::Length,
+            Problem::Own(own) => own.env().effort.first().map_or(Dimension::None, |port| port.dimension),
             _ => Dimension::Force,
         }
     }
@@ -263,17 +280,28 @@ impl TaskSpec {
                     hi: p.limits.1,
                 })
                 .collect(),
+            Problem::Own(own) => own.groups(),
         }
     }
 
     /// Reads the table; what is wrong in it becomes the default. None where the problem itself is not known.
     pub(super) fn read(mut s: Section<'_>) -> Option<Self> {
+        // Those of the program first: they are what it was made for.
+        let own = registered().iter().map(|&own| (own.name(), Chosen::Own(own)));
+        let choices: Vec<_> =
+            own.chain(ProblemKind::ALL.iter().map(|&(name, kind)| (name, Chosen::Kind(kind)))).collect();
         if s.origin("problem").is_none() {
-            let hint = "set `problem` in [task] to \"stiffness\", \"bar-length\", \"reach\", \"pendulum\", \"z-grasp\" or \
-                        \"3d-grasp\"";
-            s.clash("problem", "task.problem is missing".into(), hint);
+            let hint = format!("set `problem` in [task] to one of {}", listed(choices.iter().map(|(name, _)| *name)));
+            s.clash("problem", "task.problem is missing".into(), &hint);
         }
-        let kind = s.choice("problem", ProblemKind::ALL)?;
+        let kind = match s.choice("problem", &choices)? {
+            Chosen::Kind(kind) => kind,
+            Chosen::Own(own) => {
+                let read = own.read(&mut s);
+                s.finish();
+                return read.map(|(horizon, own)| Self { horizon, problem: Problem::Own(own) });
+            }
+        };
         let usual = match kind {
             ProblemKind::Stiffness | ProblemKind::BarLength => 1000,
             ProblemKind::Reach => 30,

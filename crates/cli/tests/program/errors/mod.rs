@@ -6,6 +6,7 @@ mod checkpoints;
 mod commands;
 mod experiments;
 mod folders;
+mod projects;
 mod system;
 mod tables;
 
@@ -82,12 +83,13 @@ const fn file(what: &'static str, text: &'static str) -> Case {
     case(what, Given::File(text), "hwasp check mine.toml")
 }
 
-const GROUPS: [Group; 6] = [
+const GROUPS: [Group; 7] = [
     Group { title: "Experiment files", cases: experiments::CASES },
     Group { title: "Command lines", cases: commands::CASES },
     Group { title: "Run folders", cases: folders::CASES },
     Group { title: "Checkpoints", cases: checkpoints::CASES },
     Group { title: "Metrics, policies and summaries", cases: tables::CASES },
+    Group { title: "Projects", cases: projects::CASES },
     Group { title: "The system", cases: system::CASES },
 ];
 

@@ -1,0 +1,78 @@
+//! `hwasp init`.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use hwasp_lab::project::{self, Origin, Project, ProjectError, Template};
+
+use crate::args::{InitArgs, TemplateArg};
+use crate::failure::Failure;
+use crate::output;
+
+pub(crate) fn run(args: &InitArgs) -> Result<(), Failure> {
+    let template = match args.template {
+        TemplateArg::Plant => Template::Plant,
+        TemplateArg::Mjcf => Template::Mjcf,
+    };
+    let origin = match &args.path {
+        Some(path) => project::checkout(path).map_err(failed)?,
+        None => std::env::current_exe().map_or(Origin::Repository, |program| project::origin_of(&program)),
+    };
+    let project = Project::new(&args.folder, args.name.as_deref(), template, origin).map_err(failed)?;
+    project.write().map_err(failed)?;
+    Ok(output::print(&next(&project, &args.folder, template))?)
+}
+
+/// What was made, and what to do with it.
+fn next(project: &Project, folder: &Path, template: Template) -> String {
+    let from = match project.origin() {
+        Origin::Checkout(path) => format!("built with the checkout {}", path.display()),
+        Origin::Repository => {
+            format!("built with {}; --path CHECKOUT takes a checkout", env!("CARGO_PKG_REPOSITORY"))
+        }
+    };
+    let mut files = vec![
+        ("src/spring.rs", "the law: a spring that should carry a lamp; write yours here"),
+        ("src/arm.rs", "the plant: the arm that it carries"),
+        ("src/hold.rs", "the task: bring the lamp to an angle and hold it"),
+        ("src/tests.rs", "derivatives, environment, a known fact, a short training"),
+        ("experiment.toml", "the training"),
+    ];
+    if template == Template::Mjcf {
+        files.insert(1, ("mechanism.xml", "the arm's physics, in MuJoCo"));
+    }
+    let mut text = format!("{} is a project in {}, {from}\n\n", project.name(), folder.display());
+    for (file, what) in files {
+        let _ = writeln!(text, "  {file:<16} {what}");
+    }
+    let _ = writeln!(
+        text,
+        "\nNext (the first build takes minutes; README.md goes on from there):\n  cd {}\n  cargo test\n  cargo hwasp train \
+         experiment.toml",
+        shell(folder)
+    );
+    text
+}
+
+/// A path as a shell reads it.
+fn shell(path: &Path) -> String {
+    let path = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
+    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', "'\\''")) }
+}
+
+/// What is wrong, and the way out.
+fn failed(error: ProjectError) -> Failure {
+    let hint = match error {
+        ProjectError::NotEmpty { .. } | ProjectError::File { .. } => {
+            "nothing was written; name a folder that is empty, or one that does not exist"
+        }
+        ProjectError::Name { .. } => "name it with --name, such as --name lamp-arm",
+        ProjectError::NoCheckout { .. } => "name the folder that holds hwasp's Cargo.lock, or leave --path out",
+        ProjectError::Io { action: "create", .. } => {
+            "name a folder that is there and may be written, or a new one in such"
+        }
+        ProjectError::Io { .. } => return Failure::from(error).hint("make room there, or name another folder"),
+    };
+    Failure::input(error).hint(hint)
+}

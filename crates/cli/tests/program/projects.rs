@@ -1,0 +1,105 @@
+//! Projects of one's own: what is written. That they build, pass their tests and train is shown by the example `template_plant`
+//! and by `.ci/run`.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::sandbox::Sandbox;
+
+/// The root of this repository, in whose target folder the program lies.
+fn root() -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap().to_str().unwrap().to_owned()
+}
+
+/// Every file below a folder, by its path there.
+fn files(folder: &Path) -> Vec<String> {
+    fn visit(folder: &Path, root: &Path, found: &mut Vec<String>) {
+        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+            let path = entry.path();
+            if path.is_dir() {
+                visit(&path, root, found);
+            } else {
+                found.push(path.strip_prefix(root).unwrap().to_str().unwrap().to_owned());
+            }
+        }
+    }
+    let mut found = Vec::new();
+    visit(folder, folder, &mut found);
+    found.sort();
+    found
+}
+
+#[test]
+fn a_project_says_what_it_is_and_what_to_do_next() {
+    let sandbox = Sandbox::new("init");
+    let told = sandbox.transcript(&["init lamp", "init --template mjcf --name desk-lamp in/mjcf"]);
+    insta::assert_snapshot!(told.replace(&root(), "CHECKOUT"));
+    let manifest = String::from_utf8(sandbox.read("lamp/Cargo.toml")).unwrap();
+    insta::assert_snapshot!("the_manifest_of_a_project", manifest.replace(&root(), "CHECKOUT"));
+    let listed = |name: &str| files(&sandbox.path(name)).join("\n");
+    insta::assert_snapshot!("the_files_of_a_project", format!("{}\n\n{}", listed("lamp"), listed("in/mjcf")));
+}
+
+#[test]
+fn nothing_is_left_open_in_its_files_and_cargo_reads_its_manifest() {
+    let sandbox = Sandbox::new("init-files");
+    for template in ["plant", "mjcf"] {
+        assert!(sandbox.run(&format!("init --template {template} {template}")).status.success());
+        for file in files(&sandbox.path(template)) {
+            let text = String::from_utf8(sandbox.read(&format!("{template}/{file}"))).unwrap();
+            assert!(!text.contains("{{"), "{template}/{file} has a place that is not filled:\n{text}");
+        }
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["metadata", "--no-deps", "--offline", "--format-version", "1"]);
+        let output = cargo.current_dir(sandbox.path(template)).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    // A model that the engine refuses is an error there.
+    for (template, arm) in [("plant", "Arm::default()"), ("mjcf", "Arm::new()?")] {
+        for file in ["main.rs", "tests.rs"] {
+            let text = String::from_utf8(sandbox.read(&format!("{template}/src/{file}"))).unwrap();
+            assert_eq!(text.matches("Arm::").count(), text.matches(arm).count(), "{template}: {text}");
+            assert!(text.contains(arm), "{template}: {text}");
+        }
+    }
+}
+
+#[test]
+fn a_copy_of_the_program_elsewhere_names_the_repository() {
+    let sandbox = Sandbox::new("init-elsewhere");
+    // Nothing above it is a checkout.
+    let elsewhere = std::env::temp_dir().join(format!("hwasp-init-{}", std::process::id()));
+    fs::create_dir_all(&elsewhere).unwrap();
+    let program = elsewhere.join("hwasp");
+    fs::copy(env!("CARGO_BIN_EXE_hwasp"), &program).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = Command::new(&program).args(arguments).current_dir(sandbox.path("")).env_clear().output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(
+        run(&["init", "lamp"])
+            .contains("built with https://github.com/roamlab/hwasp; --path CHECKOUT takes a checkout")
+    );
+    let manifest = String::from_utf8(sandbox.read("lamp/Cargo.toml")).unwrap();
+    let line = "hwasp-core = { git = \"https://github.com/roamlab/hwasp\", version = \"0.1.0\" }";
+    assert!(manifest.contains(line), "{manifest}");
+    assert!(!sandbox.path("lamp/Cargo.lock").exists());
+
+    let root = root();
+    run(&["init", "other", "--path", &root]);
+    let manifest = String::from_utf8(sandbox.read("other/Cargo.toml")).unwrap();
+    assert!(manifest.contains(&format!("path = \"{root}/crates/core\"")), "{manifest}");
+    fs::remove_dir_all(&elsewhere).unwrap();
+}
+
+#[test]
+fn a_folder_with_version_control_alone_is_empty() {
+    let sandbox = Sandbox::new("init-git");
+    fs::create_dir_all(sandbox.path("lamp/.git")).unwrap();
+    assert!(sandbox.run("init lamp").status.success());
+    let again = sandbox.run("init lamp");
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("lamp is not empty: it has .cargo, .gitignore"));
+}

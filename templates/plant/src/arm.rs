@@ -1,0 +1,54 @@
+//! The plant: physics without purpose. A lamp at the end of a light arm, θ from upright.
+
+use hwasp_core::Plant;
+
+/// Mass of the lamp, kg.
+const MASS: f64 = 0.6;
+/// Length of the arm, m.
+const LENGTH: f64 = 0.4;
+/// Friction of the pivot, N·m·s/rad.
+const FRICTION: f64 = 0.1;
+/// The arm meets its stops here, rad from upright.
+const STOP: f64 = 1.5;
+/// What gravity does to the arm when it is level, m·g·l, N·m.
+pub(crate) const GRAVITY_MOMENT: f64 = MASS * 9.81 * LENGTH;
+/// Step of the integration, s; four of them are one step of the controller.
+const STEP: f64 = 0.005;
+
+/// The arm, at first upright and at rest.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Arm {
+    angle: f64,
+    speed: f64,
+}
+
+impl Arm {
+    /// Puts it at rest at `angle`, rad.
+    pub(crate) fn place(&mut self, angle: f64) {
+        (self.angle, self.speed) = (angle, 0.0);
+    }
+
+    /// The angle, rad from upright.
+    pub(crate) fn angle(&self) -> f64 {
+        self.angle
+    }
+}
+
+impl Plant for Arm {
+    /// `effort` is what the law says: the torque on the arm, N·m.
+    fn advance(&mut self, effort: &[f64], _command: &[f64]) {
+        for _ in 0..4 {
+            let torque = effort[0] + GRAVITY_MOMENT * self.angle.sin() - FRICTION * self.speed;
+            self.speed += torque / (MASS * LENGTH * LENGTH) * STEP;
+            self.angle += self.speed * STEP;
+            if self.angle.abs() > STOP {
+                (self.angle, self.speed) = (self.angle.clamp(-STOP, STOP), 0.0);
+            }
+        }
+    }
+
+    /// What the law may read: angle, rad, and speed, rad/s.
+    fn state(&self, out: &mut [f64]) {
+        out.copy_from_slice(&[self.angle, self.speed]);
+    }
+}

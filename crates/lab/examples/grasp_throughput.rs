@@ -1,4 +1,4 @@
-//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes.
+//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes. The last line says it in JSON.
 //!
 //!     grasp_throughput [THREADS [ITERATIONS]]        default: 2 threads, 2 iterations of 20,000 steps
 //!
@@ -14,6 +14,7 @@ use std::time::Instant;
 
 use hwasp_core::{EnvSpec, Environment, EpisodeKind, Episodes, Outcome, Sampler, Step, Stream, Threads};
 use hwasp_lab::{Assembly, spec, train};
+use serde_json::json;
 
 /// An environment that adds up the time of its steps.
 struct Timed {
@@ -90,14 +91,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let sampling = began.elapsed().as_secs_f64();
 
+    let share = |seconds: f64| seconds / trained.wall_s;
+    let (acting, updates) = (share((sampling - physics).max(0.0)), share((trained.wall_s - sampling).max(0.0)));
     println!("z-grasp, {steps} steps on {threads} threads");
     println!("  training, everything included  {:8.0} steps/s", steps / trained.wall_s);
     println!("  the same physics alone         {:8.0} steps/s", steps / physics);
-    println!("  share of the time in physics   {:8.1} %", 100.0 * physics / trained.wall_s);
-    println!("  controller, law, bookkeeping   {:8.1} %", 100.0 * (sampling - physics).max(0.0) / trained.wall_s);
+    println!("  share of the time in physics   {:8.1} %", 100.0 * share(physics));
+    println!("  controller, law, bookkeeping   {:8.1} %", 100.0 * acting);
+    println!("  updates                        {:8.1} %", 100.0 * updates);
     println!(
-        "  updates                        {:8.1} %",
-        100.0 * (trained.wall_s - sampling).max(0.0) / trained.wall_s
+        "{}",
+        json!({ "training": steps / trained.wall_s, "physics": steps / physics, "share": share(physics),
+                "acting": acting, "updates": updates })
     );
     Ok(())
 }

@@ -11,7 +11,7 @@ NEAR = 1e-3
 
 
 def compare(peers, turns, scale):
-    updates = max(1, int(5 * scale))
+    updates = max(1, int(3 * scale))
     with tempfile.TemporaryDirectory() as folder:
         call([example("trpo_update"), 1, 1, "1.0", folder])
 

@@ -4,11 +4,14 @@ import resource
 import statistics
 import time
 
+# Turns in which every setting is tried.
+TRIALS = 2
+
 
 class Contest:
     """What every program reached, in units of work per second: `rates[program][setting]`, one number a turn.
 
-    `programs[program][setting]` is called for one measurement. In the first turn every setting is tried; in the
+    `programs[program][setting]` is called for one measurement. In the first two turns every setting is tried; in the
     others each program runs with its fastest one, so that a busy machine is busy for all.
     """
 
@@ -17,23 +20,23 @@ class Contest:
         self.rates = {name: {setting: [] for setting in settings} for name, settings in programs.items()}
         for turn in range(turns):
             for name, settings in programs.items():
-                for setting in settings if turn == 0 else [self.best(name)]:
+                for setting in settings if turn < TRIALS else [self.best(name)]:
                     rate = settings[setting]()
                     self.rates[name][setting].append(rate)
-                    print(f"  turn {turn + 1}: {name}, {setting}: {rate:,.4g}/s", flush=True)
+                    print(f"  turn {turn + 1}: {name}, {setting}: {show(rate)}/s", flush=True)
         wall = time.perf_counter() - began
         foreign = machine_time() - busy - (children_time() - own)
         self.foreign = max(foreign, 0.0) / (wall * os.cpu_count())
 
     def best(self, name):
-        """The setting that did best in the first turn."""
-        return max(self.rates[name], key=lambda setting: self.rates[name][setting][0])
+        """The setting that did best while all were tried."""
+        return max(self.rates[name], key=lambda setting: max(self.rates[name][setting][:TRIALS]))
 
     def median(self, name):
         """The median rate of a program with its best setting."""
         return statistics.median(self.rates[name][self.best(name)])
 
-    def table(self, subject, unit, scale=1.0):
+    def table(self, subject, unit):
         """One row per setting; ratios are those of the first program's median to each."""
         names = list(self.rates)
         lines = [f"| program | setting | {unit}, median | lowest to highest | runs | {names[0]} is faster by |",
@@ -41,11 +44,16 @@ class Contest:
         for name, settings in self.rates.items():
             for setting, rates in sorted(settings.items(), key=lambda item: item[0] != self.best(name)):
                 middle = statistics.median(rates)
-                span = f"{scale * min(rates):,.4g} to {scale * max(rates):,.4g}" if len(rates) > 1 else ""
+                span = f"{show(min(rates))} to {show(max(rates))}"
                 ratio = "" if name == names[0] else f"{self.median(names[0]) / middle:.2f}"
-                lines.append(f"| {name} | {setting} | {scale * middle:,.4g} | {span} | {len(rates)} | {ratio} |")
+                lines.append(f"| {name} | {setting} | {show(middle)} | {span} | {len(rates)} | {ratio} |")
         lines += ["", f"{subject} Other programs took {100 * self.foreign:.0f} % of the machine's cores meanwhile."]
         return lines
+
+
+def show(rate):
+    """A rate with four digits or more."""
+    return f"{rate:,.0f}" if rate >= 1000 else f"{rate:.4g}"
 
 
 def machine_time():

@@ -26,7 +26,7 @@ def training(turns, iterations):
         f"| the same physics alone | {median('physics'):,.0f} |",
         f"| share of the time in physics | {100 * median('share'):.1f} % ({100 * shares[0]:.1f} to {100 * shares[-1]:.1f}, "
         f"{turns} runs) |",
-        f"| controller, law, bookkeeping | {100 * median('acting'):.1f} % |",
+        f"| controller, law, and waiting for the slower thread | {100 * median('acting'):.1f} % |",
         f"| updates | {100 * median('updates'):.1f} % |",
     ]
 

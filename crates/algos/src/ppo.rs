@@ -136,17 +136,12 @@ impl<P: Policy> Learner for Ppo<P> {
     ) -> Result<UpdateMetrics, LearnError> {
         let Self { optimiser, baseline } = self;
         let targets = baseline.targets(batch, &optimiser.config.advantages(), iteration)?;
-        let not_finite = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
-        let before = (optimiser.params.clone(), optimiser.adam.clone(), baseline.save().map_err(not_finite)?);
-        // Both learn from the same targets, and neither looks at the other.
-        let (mut updated, mut fitted) = (Ok(UpdateMetrics::default()), Ok(()));
-        executor.join(&mut || updated = optimiser.update(batch, &targets.advantage, progress, iteration), &mut || {
-            fitted = baseline.fit(batch, &targets, progress, iteration)
+        let before = (optimiser.params.clone(), optimiser.adam.clone());
+        let result = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
+            optimiser.update(batch, &targets.advantage, progress, iteration)
         });
-        let result = updated.and_then(|metrics| fitted.map(|()| metrics));
         if result.is_err() {
-            (optimiser.params, optimiser.adam) = (before.0, before.1);
-            baseline.load(&before.2).map_err(not_finite)?;
+            (optimiser.params, optimiser.adam) = before;
         }
         result
     }

@@ -3,7 +3,7 @@ from contest import Contest
 from document import aim
 from programs import call, example
 
-COST = {12: 20_000, 1300: 200}  # generations
+COST = {12: 4_000, 1300: 200}  # generations
 
 
 def compare(peers, turns, scale):

@@ -45,6 +45,6 @@ def about(python):
     return [
         f"Measured on {datetime.datetime.now(datetime.timezone.utc):%-d %B %Y} at commit {said('git', 'rev-parse', '--short', 'HEAD')}: "
         f"{os.cpu_count()} cores of {field('/proc/cpuinfo', 'model name')} ({vectors}, {memory:.0f} GiB), "
-        f"Linux {platform.release()}, {said('rustc', '--version').rsplit(' (', 1)[0]}, "
+        f"Linux {platform.release().split('-')[0]}, {said('rustc', '--version').rsplit(' (', 1)[0]}, "
         f"Python {said(python, '-c', 'import platform; print(platform.python_version())')}, {versions}."
     ]

@@ -1,15 +1,18 @@
-//! Evaluations of CMA-ES to 1e-9, and seconds per generation, for `scripts/cma_peer.py`.
+//! Evaluations of CMA-ES to 1e-9, and seconds per generation, for the comparison of `benches/peers`. Prints JSON.
 //!
-//!     cmaes_evaluations FUNCTION N RUNS        evaluations of each run, or `failed`
+//!     cmaes_evaluations FUNCTION N RUNS        evaluations of each run; null where it failed
 //!     cmaes_evaluations cost N GENERATIONS     seconds per generation on the sphere
 //!
 //! Without arguments: sphere 10 20.
 
 #![allow(clippy::print_stdout)] // a program
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use hwasp_algos::{Cmaes, CmaesConfig, Search, SearchError};
+
+/// Generations after which the sphere is begun anew: before it is solved to the last bit.
+const GENERATIONS: u64 = 200;
 
 fn value(function: &str, x: &[f64]) -> f64 {
     let last = x.len() as f64 - 1.0;
@@ -28,15 +31,20 @@ fn main() -> Result<(), SearchError> {
     let [function, n, count] = &arguments[..] else { panic!("FUNCTION N RUNS") };
     let (Ok(n), Ok(count)) = (n.parse::<usize>(), count.parse::<u64>()) else { panic!("N and RUNS are counts") };
     if function == "cost" {
-        let mut search = Cmaes::new(CmaesConfig::default(), &vec![1.0; n], 0)?;
-        let start = Instant::now();
-        for _ in 0..count {
-            let scores: Vec<f64> = search.ask().iter().map(|x| -value("sphere", x)).collect();
-            search.tell(&scores)?;
+        let mut spent = Duration::ZERO;
+        for first in (0..count).step_by(GENERATIONS as usize) {
+            let mut search = Cmaes::new(CmaesConfig::default(), &vec![1.0; n], first)?;
+            let start = Instant::now();
+            for _ in first..count.min(first + GENERATIONS) {
+                let scores: Vec<f64> = search.ask().iter().map(|x| -value("sphere", x)).collect();
+                search.tell(&scores)?;
+            }
+            spent += start.elapsed();
         }
-        println!("{}", start.elapsed().as_secs_f64() / count as f64);
+        println!("{}", spent.as_secs_f64() / count as f64);
         return Ok(());
     }
+    let mut answers = Vec::new();
     let mean = if function == "rosenbrock" { 0.0 } else { 1.0 };
     for seed in 0..count {
         let mut search = Cmaes::new(CmaesConfig::default(), &vec![mean; n], seed)?;
@@ -53,7 +61,8 @@ fn main() -> Result<(), SearchError> {
                 break None;
             }
         };
-        println!("{}", found.map_or_else(|| "failed".to_owned(), |e| e.to_string()));
+        answers.push(found.map_or_else(|| "null".to_owned(), |e| e.to_string()));
     }
+    println!("[{}]", answers.join(", "));
     Ok(())
 }

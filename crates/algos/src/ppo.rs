@@ -1,18 +1,17 @@
 //! Proximal policy optimisation (Schulman et al. 2017).
 
+mod optimiser;
+
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Executor, Policy, Purpose, gaussian, stream};
-use rand::seq::SliceRandom;
+use hwasp_core::{Batch, Executor, Policy};
 use serde::{Deserialize, Serialize};
 
-use crate::adam::{Adam, AdamConfig, clip_norm};
+use self::optimiser::Optimiser;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, BaselineConfig};
 use crate::gae::AdvantageConfig;
 use crate::learner::{LearnError, Learner, UpdateMetrics};
-use crate::minibatch::{BLOCK, Minibatch};
-use crate::surrogate::Surrogate;
 
 /// Settings of [`Ppo`].
 ///
@@ -111,149 +110,38 @@ pub struct PpoSettings {
 
 /// The learner: a policy's parameters, their optimiser and a baseline.
 pub struct Ppo<P: Policy> {
-    config: PpoConfig,
-    policy: Arc<P>,
-    params: Vec<f32>,
-    adam: Adam,
+    optimiser: Optimiser<P>,
     baseline: Baseline,
-    seed: u64,
-    /// Working memory.
-    step: GradientStep<P>,
-}
-
-/// Everything one gradient step writes, allocated once.
-struct GradientStep<P: Policy> {
-    tape: P::Tape,
-    minibatch: Minibatch,
-    cotangent: Vec<f32>,
-    log_std: Vec<f32>,
-    log_std_gradient: Vec<f32>,
-    gradient: Vec<f32>,
-}
-
-/// Sums over the rows of one gradient step.
-#[derive(Clone, Copy, Debug, Default)]
-struct Totals {
-    kl: f64,
-    clipped: f64,
-    rows: usize,
 }
 
 impl<P: Policy> Ppo<P> {
     /// Starts from `params`. `seed` names the streams of minibatches and of the baseline.
     pub fn new(settings: &PpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
-        let config = settings.ppo.clone();
-        let actions = policy.action_dim();
-        let step = GradientStep {
-            tape: policy.tape(BLOCK),
-            minibatch: Minibatch::default(),
-            cotangent: vec![0.0; actions * BLOCK],
-            log_std: vec![0.0; actions],
-            log_std_gradient: vec![0.0; actions],
-            gradient: vec![0.0; params.len()],
-        };
-        let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
         let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
-        Self { config, policy, params, adam, baseline, seed, step }
-    }
-
-    /// Learning rates of all parameters at `progress` of training.
-    fn learning_rates(&self, progress: f64) -> Vec<f32> {
-        let config = &self.config;
-        let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
-        let mut rates = vec![rate as f32; self.params.len()];
-        for group in self.policy.groups() {
-            let scale = match group.name {
-                "design" => config.design_lr_scale,
-                "log_std" => config.log_std_lr_scale,
-                _ => 1.0,
-            };
-            rates[group.range.clone()].fill((rate * scale) as f32);
-        }
-        rates
-    }
-
-    fn dims(&self) -> (usize, usize, usize) {
-        (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim())
-    }
-
-    /// The epochs of one update; leaves the parameters changed even where it fails.
-    fn optimise(
-        &mut self,
-        batch: &Batch,
-        advantage: &[f32],
-        progress: f64,
-        iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
-        let rates = self.learning_rates(progress);
-        let rows = batch.rows();
-        let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
-        let size = if whole { rows } else { self.config.minibatch_rows };
-        let mut order: Vec<u32> = (0..rows as u32).collect();
-        let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
-        let mut metrics = UpdateMetrics::default();
-        let mut steps = 0;
-        for epoch in 0..self.config.epochs {
-            if !whole {
-                order.shuffle(&mut shuffle);
-            }
-            let mut epoch_totals = Totals::default();
-            for indices in order.chunks(size.max(1)) {
-                // The whole batch in its own order needs gathering but once.
-                if !whole || epoch == 0 {
-                    let dims = self.dims();
-                    self.step.minibatch.gather(batch, advantage, indices, dims);
-                }
-                let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
-                metrics.grad_norm += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
-                steps += 1;
-                if !metrics.grad_norm.is_finite() {
-                    return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
-                }
-                self.adam.step(&mut self.params, &self.step.gradient, &rates);
-                epoch_totals.kl += totals.kl;
-                epoch_totals.clipped += totals.clipped;
-                epoch_totals.rows += totals.rows;
-            }
-            let n = epoch_totals.rows.max(1) as f64;
-            metrics.kl = epoch_totals.kl / n;
-            metrics.clip_fraction = epoch_totals.clipped / n;
-            metrics.epochs = epoch + 1;
-            if self.config.target_kl.is_some_and(|limit| metrics.kl > 1.5 * limit) {
-                break;
-            }
-        }
-        metrics.grad_norm /= f64::from(steps).max(1.0);
-        self.policy.log_std(&self.params, progress, &mut self.step.log_std);
-        metrics.entropy = gaussian::entropy(&self.step.log_std);
-        Ok(metrics)
+        Self { optimiser: Optimiser::new(settings.ppo.clone(), policy, params, seed), baseline }
     }
 }
 
 impl<P: Policy> Learner for Ppo<P> {
     fn params(&self) -> &[f32] {
-        &self.params
+        &self.optimiser.params
     }
 
     fn update(
         &mut self,
-        _executor: &dyn Executor,
+        executor: &dyn Executor,
         batch: &Batch,
         progress: f64,
         iteration: u64,
     ) -> Result<UpdateMetrics, LearnError> {
-        let targets = self.baseline.targets(batch, &self.config.advantages(), iteration)?;
-        let before = (self.params.clone(), self.adam.clone());
-        let result = self.optimise(batch, &targets.advantage, progress, iteration).and_then(|metrics| {
-            let sound = self.params.iter().all(|p| p.is_finite());
-            sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
-        });
-        let result = result.and_then(|metrics| {
-            self.baseline.fit(batch, &targets, progress, iteration)?;
-            Ok(metrics)
+        let Self { optimiser, baseline } = self;
+        let targets = baseline.targets(batch, &optimiser.config.advantages(), iteration)?;
+        let before = (optimiser.params.clone(), optimiser.adam.clone());
+        let result = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
+            optimiser.update(batch, &targets.advantage, progress, iteration)
         });
         if result.is_err() {
-            (self.params, self.adam) = before;
+            (optimiser.params, optimiser.adam) = before;
         }
         result
     }
@@ -261,43 +149,9 @@ impl<P: Policy> Learner for Ppo<P> {
 
 impl<P: Policy> Persist for Ppo<P> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        with.vector("params", &mut self.params)?;
-        with.part("adam", &mut self.adam)?;
+        with.vector("params", &mut self.optimiser.params)?;
+        with.part("adam", &mut self.optimiser.adam)?;
         with.part("baseline", &mut self.baseline)
-    }
-}
-
-impl<P: Policy> GradientStep<P> {
-    /// The gradient of the loss over the minibatch, left in `gradient`:
-    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term).
-    fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> Totals {
-        policy.bind(params, &mut self.tape);
-        policy.log_std(params, progress, &mut self.log_std);
-        self.log_std_gradient.fill(0.0);
-        let mut totals = Totals { rows: self.minibatch.count, ..Totals::default() };
-        for block in self.minibatch.blocks() {
-            let rows = self.minibatch.rows(&block);
-            let mean = policy.forward(&rows, &mut self.tape);
-            let surrogate = Surrogate {
-                minibatch: &self.minibatch,
-                block,
-                mean,
-                log_std: &self.log_std,
-                clip_ratio: config.clip_ratio as f32,
-            };
-            let (kl, clipped) = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
-            totals.kl += kl;
-            totals.clipped += clipped;
-            policy.vjp(&rows, &self.cotangent, &mut self.tape);
-        }
-        policy.gradient(&mut self.tape, &mut self.gradient);
-        if let Some(range) = policy.log_std_params() {
-            for (to, from) in self.gradient[range].iter_mut().zip(&self.log_std_gradient) {
-                // The entropy of a Gaussian grows by one nat per unit of log-std.
-                *to = from - config.entropy_coef as f32;
-            }
-        }
-        totals
     }
 }
 

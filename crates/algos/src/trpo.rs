@@ -32,10 +32,15 @@ const LEAST_CURVATURE: f64 = 1e-8;
 /// gradient of the objective and H the curvature of the divergence, its length √(2·`max_kl`/xᵀHx), shortened until it
 /// holds what it promises.
 pub struct Trpo<P: Policy> {
+    region: TrustRegion<P>,
+    baseline: Baseline,
+}
+
+/// A policy's parameters and what moves them.
+struct TrustRegion<P: Policy> {
     config: TrpoConfig,
     policy: Arc<P>,
     params: Vec<f32>,
-    baseline: Baseline,
     seed: u64,
     /// The unit of each parameter in the equations of a step.
     unit: Vec<f64>,
@@ -53,12 +58,18 @@ impl<P: Policy> Trpo<P> {
     /// Starts from `params`. `seed` names the streams of the curvature's rows and of the baseline.
     pub fn new(settings: &TrpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
         let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
+        Self { region: TrustRegion::new(settings.trpo.clone(), policy, params, seed), baseline }
+    }
+}
+
+impl<P: Policy> TrustRegion<P> {
+    fn new(config: TrpoConfig, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
         let mut unit = vec![1.0; params.len()];
         for group in policy.groups().iter().filter(|group| group.name == "design") {
-            unit[group.range.clone()].fill(settings.trpo.design_scale);
+            unit[group.range.clone()].fill(config.design_scale);
         }
         Self {
-            config: settings.trpo.clone(),
+            config,
             passes: Passes::new(Arc::clone(&policy)),
             batch: Minibatch::default(),
             curvature: Minibatch::default(),
@@ -66,7 +77,6 @@ impl<P: Policy> Trpo<P> {
             gradient: vec![0.0; params.len()],
             policy,
             params,
-            baseline,
             seed,
             unit,
             rejected: 0,
@@ -146,7 +156,7 @@ impl<P: Policy> Trpo<P> {
 
 impl<P: Policy> Learner for Trpo<P> {
     fn params(&self) -> &[f32] {
-        &self.params
+        &self.region.params
     }
 
     fn update(
@@ -156,19 +166,21 @@ impl<P: Policy> Learner for Trpo<P> {
         progress: f64,
         iteration: u64,
     ) -> Result<UpdateMetrics, LearnError> {
-        let targets = self.baseline.targets(batch, &self.config.advantages, iteration)?;
-        self.gather(batch, &targets.advantage, iteration);
-        let metrics = self.step(executor, progress, iteration)?;
-        self.baseline.fit(batch, &targets, progress, iteration)?;
-        self.params.copy_from_slice(&self.candidate);
+        let Self { region, baseline } = self;
+        let targets = baseline.targets(batch, &region.config.advantages, iteration)?;
+        let metrics = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
+            region.gather(batch, &targets.advantage, iteration);
+            region.step(executor, progress, iteration)
+        })?;
+        region.params.copy_from_slice(&region.candidate);
         Ok(metrics)
     }
 }
 
 impl<P: Policy> Persist for Trpo<P> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        with.vector("params", &mut self.params)?;
+        with.vector("params", &mut self.region.params)?;
         with.part("baseline", &mut self.baseline)?;
-        with.number("rejected", &mut self.rejected)
+        with.number("rejected", &mut self.region.rejected)
     }
 }

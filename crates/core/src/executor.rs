@@ -9,6 +9,9 @@ pub trait Executor: Send + Sync {
 
     /// Calls `job(i)` for every `i < count`, on any thread and in any order.
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync));
+
+    /// Calls both, at once where there are threads for it.
+    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send));
 }
 
 impl dyn Executor + '_ {
@@ -38,6 +41,11 @@ impl Executor for Serial {
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
         (0..count).for_each(job);
     }
+
+    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+        a();
+        b();
+    }
 }
 
 /// A pool of threads.
@@ -60,5 +68,9 @@ impl Executor for Threads {
 
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
         self.pool.install(|| (0..count).into_par_iter().for_each(job));
+    }
+
+    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+        self.pool.join(a, b);
     }
 }

@@ -1,4 +1,4 @@
-//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes.
+//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes. The last line says it in JSON.
 //!
 //!     grasp_throughput [THREADS [ITERATIONS]]        default: 2 threads, 2 iterations of 20,000 steps
 //!
@@ -9,11 +9,12 @@
 
 use std::error::Error;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use hwasp_core::{EnvSpec, Environment, EpisodeKind, Episodes, Outcome, Sampler, Step, Stream, Threads};
-use hwasp_lab::{Assembly, spec, train};
+use hwasp_lab::{Assembly, spec};
+use serde_json::json;
 
 /// An environment that adds up the time of its steps.
 struct Timed {
@@ -62,8 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
     let threads = arguments.next().transpose()?.unwrap_or(2);
     let iterations = arguments.next().transpose()?.unwrap_or(2);
-    let settings =
-        [("train.env_steps", (20_000 * iterations).to_string()), ("train.evaluation_episodes", "1".to_owned())];
+    let settings = [("train.env_steps", (20_000 * iterations).to_string())];
     let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
     let mut assembly = Assembly::new(&spec::resolve(layers, None)?)?;
     let (whole, nanoseconds) = (Arc::clone(&assembly.problem.training.make), Arc::new(AtomicU64::new(0)));
@@ -73,31 +73,39 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
 
     let executor = Threads::new(threads as usize)?;
-    let trained = train(&assembly, &executor, &mut (), &AtomicBool::new(false))?;
-    let steps = trained.env_steps as f64;
-    let physics = 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64 / threads as f64;
-
-    // The same episodes again, without learning.
-    let horizon = assembly.spec().train.episode_steps;
-    let sampler =
-        Sampler::new(Arc::clone(&assembly.policy), Arc::clone(&assembly.problem.training.make), Some(horizon));
-    let params = assembly.init();
-    let began = Instant::now();
+    let train = &assembly.spec().train;
+    let sampler = Sampler::new(
+        Arc::clone(&assembly.policy),
+        Arc::clone(&assembly.problem.training.make),
+        Some(train.episode_steps),
+    );
+    let mut learner = assembly.learner(assembly.init());
+    let (mut sampling, mut updating, mut steps) = (0.0, 0.0, 0.0);
     for iteration in 0..iterations {
-        let indices = 0..assembly.spec().train.episodes_per_iteration as u64;
-        let asked = Episodes { seed: 0, iteration, indices, progress: 0.0, kind: EpisodeKind::Training };
-        sampler.collect(&executor, &params, &asked)?;
+        let progress = iteration as f64 / iterations as f64;
+        let indices = 0..train.episodes_per_iteration as u64;
+        let asked = Episodes { seed: 0, iteration, indices, progress, kind: EpisodeKind::Training };
+        let began = Instant::now();
+        let batch = sampler.collect(&executor, learner.params(), &asked)?;
+        let collected = Instant::now();
+        learner.update(&executor, &batch, progress, iteration)?;
+        sampling += (collected - began).as_secs_f64();
+        updating += collected.elapsed().as_secs_f64();
+        steps += batch.rows() as f64;
     }
-    let sampling = began.elapsed().as_secs_f64();
+    let physics = 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64 / threads as f64;
+    let whole = sampling + updating;
 
     println!("z-grasp, {steps} steps on {threads} threads");
-    println!("  training, everything included  {:8.0} steps/s", steps / trained.wall_s);
+    println!("  training, everything included  {:8.0} steps/s", steps / whole);
     println!("  the same physics alone         {:8.0} steps/s", steps / physics);
-    println!("  share of the time in physics   {:8.1} %", 100.0 * physics / trained.wall_s);
-    println!("  controller, law, bookkeeping   {:8.1} %", 100.0 * (sampling - physics).max(0.0) / trained.wall_s);
+    println!("  share of the time in physics   {:8.1} %", 100.0 * physics / whole);
+    println!("  controller, law, waiting       {:8.1} %", 100.0 * (sampling - physics) / whole);
+    println!("  updates                        {:8.1} %", 100.0 * updating / whole);
     println!(
-        "  updates                        {:8.1} %",
-        100.0 * (trained.wall_s - sampling).max(0.0) / trained.wall_s
+        "{}",
+        json!({ "training": steps / whole, "physics": steps / physics, "share": physics / whole,
+                "acting": (sampling - physics) / whole, "updates": updating / whole })
     );
     Ok(())
 }

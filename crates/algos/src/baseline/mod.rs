@@ -6,7 +6,7 @@ mod mlp;
 pub use linear::LinearBaseline;
 pub use mlp::{MlpBaseline, MlpBaselineConfig};
 
-use hwasp_core::Batch;
+use hwasp_core::{Batch, Executor};
 use serde::{Deserialize, Serialize};
 
 use crate::archive::{Exchange, Persist, StateError};
@@ -99,6 +99,28 @@ impl Baseline {
             }
         }
         Ok(())
+    }
+
+    /// [Fits](Self::fit) while `improve` improves the policy, at once where there are threads for it: both learn from the same
+    /// targets, and neither looks at the other. If either fails the baseline is as it was before.
+    pub(crate) fn fit_beside<T: Default + Send>(
+        &mut self,
+        executor: &dyn Executor,
+        (batch, targets): (&Batch, &Advantages),
+        (progress, iteration): (f64, u64),
+        mut improve: impl FnMut() -> Result<T, LearnError> + Send,
+    ) -> Result<T, LearnError> {
+        let not_finite = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
+        let before = self.save().map_err(not_finite)?;
+        let (mut improved, mut fitted) = (Ok(T::default()), Ok(()));
+        executor.join(&mut || improved = improve(), &mut || {
+            fitted = self.fit(batch, targets, progress, iteration);
+        });
+        let result = improved.and_then(|improved| fitted.map(|()| improved));
+        if result.is_err() {
+            self.load(&before).map_err(not_finite)?;
+        }
+        result
     }
 }
 

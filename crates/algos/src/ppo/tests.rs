@@ -130,11 +130,11 @@ fn settings() -> PpoSettings {
 fn differentiate(batch: &Batch) -> ([f32; 2], Totals, [f32; 3]) {
     let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
     let advantage: Vec<f32> = batch.reward.iter().map(|&r| r as f32).collect();
-    ppo.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
-    let totals = ppo.step.run(&Line::new(), &params(), &ppo.config, 0.0);
+    ppo.optimiser.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
+    let totals = ppo.optimiser.step.run(&Line::new(), &params(), &ppo.optimiser.config, 0.0);
     let mut cotangent = [0.0; 3];
-    cotangent.copy_from_slice(&ppo.step.cotangent[..3]);
-    ([ppo.step.gradient[0], ppo.step.gradient[1]], totals, cotangent)
+    cotangent.copy_from_slice(&ppo.optimiser.step.cotangent[..3]);
+    ([ppo.optimiser.step.gradient[0], ppo.optimiser.step.gradient[1]], totals, cotangent)
 }
 
 /// -mean[min(ρ·A, clip(ρ, 0.8, 1.2)·A)] - 0.1·H, written down independently.

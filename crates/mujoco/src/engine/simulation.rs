@@ -181,6 +181,12 @@ impl Simulation {
         self.data.xfrc_applied_mut()[body.0] = [fx, fy, fz, tx, ty, tz];
     }
 
+    /// The wrench that was applied to a body last.
+    pub fn wrench(&self, body: BodyId) -> Wrench {
+        let [fx, fy, fz, tx, ty, tz] = self.data.xfrc_applied()[body.0];
+        Wrench { force: [fx, fy, fz], torque: [tx, ty, tz] }
+    }
+
     /// Mass of a body, kg.
     pub fn mass(&self, body: BodyId) -> f64 {
         self.model().body_mass()[body.0]

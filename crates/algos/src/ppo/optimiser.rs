@@ -1,0 +1,165 @@
+//! What moves a policy: minibatches, gradients of the clipped surrogate, Adam.
+
+use std::sync::Arc;
+
+use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
+use rand::seq::SliceRandom;
+
+use super::PpoConfig;
+use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::learner::{LearnError, UpdateMetrics};
+use crate::minibatch::{BLOCK, Minibatch};
+use crate::surrogate::Surrogate;
+
+/// A policy's parameters and their optimiser.
+pub(super) struct Optimiser<P: Policy> {
+    pub(super) config: PpoConfig,
+    policy: Arc<P>,
+    pub(super) params: Vec<f32>,
+    pub(super) adam: Adam,
+    seed: u64,
+    /// Working memory.
+    pub(super) step: GradientStep<P>,
+}
+
+/// Everything one gradient step writes, allocated once.
+pub(super) struct GradientStep<P: Policy> {
+    tape: P::Tape,
+    pub(super) minibatch: Minibatch,
+    pub(super) cotangent: Vec<f32>,
+    log_std: Vec<f32>,
+    log_std_gradient: Vec<f32>,
+    pub(super) gradient: Vec<f32>,
+}
+
+/// Sums over the rows of one gradient step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Totals {
+    pub(super) kl: f64,
+    pub(super) clipped: f64,
+    pub(super) rows: usize,
+}
+
+impl<P: Policy> Optimiser<P> {
+    /// Starts from `params`. `seed` names the streams of minibatches.
+    pub(super) fn new(config: PpoConfig, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
+        let actions = policy.action_dim();
+        let step = GradientStep {
+            tape: policy.tape(BLOCK),
+            minibatch: Minibatch::default(),
+            cotangent: vec![0.0; actions * BLOCK],
+            log_std: vec![0.0; actions],
+            log_std_gradient: vec![0.0; actions],
+            gradient: vec![0.0; params.len()],
+        };
+        let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
+        Self { config, policy, params, adam, seed, step }
+    }
+
+    /// Learning rates of all parameters at `progress` of training.
+    fn learning_rates(&self, progress: f64) -> Vec<f32> {
+        let config = &self.config;
+        let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
+        let mut rates = vec![rate as f32; self.params.len()];
+        for group in self.policy.groups() {
+            let scale = match group.name {
+                "design" => config.design_lr_scale,
+                "log_std" => config.log_std_lr_scale,
+                _ => 1.0,
+            };
+            rates[group.range.clone()].fill((rate * scale) as f32);
+        }
+        rates
+    }
+
+    fn dims(&self) -> (usize, usize, usize) {
+        (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim())
+    }
+
+    /// The epochs of one update; leaves the parameters changed even where it fails.
+    pub(super) fn update(
+        &mut self,
+        batch: &Batch,
+        advantage: &[f32],
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
+        let rates = self.learning_rates(progress);
+        let rows = batch.rows();
+        let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
+        let size = if whole { rows } else { self.config.minibatch_rows };
+        let mut order: Vec<u32> = (0..rows as u32).collect();
+        let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
+        let mut metrics = UpdateMetrics::default();
+        let mut steps = 0;
+        for epoch in 0..self.config.epochs {
+            if !whole {
+                order.shuffle(&mut shuffle);
+            }
+            let mut epoch_totals = Totals::default();
+            for indices in order.chunks(size.max(1)) {
+                // The whole batch in its own order needs gathering but once.
+                if !whole || epoch == 0 {
+                    let dims = self.dims();
+                    self.step.minibatch.gather(batch, advantage, indices, dims);
+                }
+                let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
+                metrics.grad_norm += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
+                steps += 1;
+                if !metrics.grad_norm.is_finite() {
+                    return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
+                }
+                self.adam.step(&mut self.params, &self.step.gradient, &rates);
+                epoch_totals.kl += totals.kl;
+                epoch_totals.clipped += totals.clipped;
+                epoch_totals.rows += totals.rows;
+            }
+            let n = epoch_totals.rows.max(1) as f64;
+            metrics.kl = epoch_totals.kl / n;
+            metrics.clip_fraction = epoch_totals.clipped / n;
+            metrics.epochs = epoch + 1;
+            if self.config.target_kl.is_some_and(|limit| metrics.kl > 1.5 * limit) {
+                break;
+            }
+        }
+        metrics.grad_norm /= f64::from(steps).max(1.0);
+        self.policy.log_std(&self.params, progress, &mut self.step.log_std);
+        metrics.entropy = gaussian::entropy(&self.step.log_std);
+        let sound = self.params.iter().all(|p| p.is_finite());
+        sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+    }
+}
+
+impl<P: Policy> GradientStep<P> {
+    /// The gradient of the loss over the minibatch, left in `gradient`:
+    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term).
+    pub(super) fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> Totals {
+        policy.bind(params, &mut self.tape);
+        policy.log_std(params, progress, &mut self.log_std);
+        self.log_std_gradient.fill(0.0);
+        let mut totals = Totals { rows: self.minibatch.count, ..Totals::default() };
+        for block in self.minibatch.blocks() {
+            let rows = self.minibatch.rows(&block);
+            let mean = policy.forward(&rows, &mut self.tape);
+            let surrogate = Surrogate {
+                minibatch: &self.minibatch,
+                block,
+                mean,
+                log_std: &self.log_std,
+                clip_ratio: config.clip_ratio as f32,
+            };
+            let (kl, clipped) = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
+            totals.kl += kl;
+            totals.clipped += clipped;
+            policy.vjp(&rows, &self.cotangent, &mut self.tape);
+        }
+        policy.gradient(&mut self.tape, &mut self.gradient);
+        if let Some(range) = policy.log_std_params() {
+            for (to, from) in self.gradient[range].iter_mut().zip(&self.log_std_gradient) {
+                // The entropy of a Gaussian grows by one nat per unit of log-std.
+                *to = from - config.entropy_coef as f32;
+            }
+        }
+        totals
+    }
+}

@@ -111,11 +111,16 @@ pub struct PpoSettings {
 
 /// The learner: a policy's parameters, their optimiser and a baseline.
 pub struct Ppo<P: Policy> {
+    actor: Actor<P>,
+    baseline: Baseline,
+}
+
+/// What improves the policy. It knows of the baseline no more than the advantages.
+struct Actor<P: Policy> {
     config: PpoConfig,
     policy: Arc<P>,
     params: Vec<f32>,
     adam: Adam,
-    baseline: Baseline,
     seed: u64,
     /// Working memory.
     step: GradientStep<P>,
@@ -154,9 +159,11 @@ impl<P: Policy> Ppo<P> {
         };
         let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
         let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
-        Self { config, policy, params, adam, baseline, seed, step }
+        Self { actor: Actor { config, policy, params, adam, seed, step }, baseline }
     }
+}
 
+impl<P: Policy> Actor<P> {
     /// Learning rates of all parameters at `progress` of training.
     fn learning_rates(&self, progress: f64) -> Vec<f32> {
         let config = &self.config;
@@ -177,7 +184,20 @@ impl<P: Policy> Ppo<P> {
         (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim())
     }
 
-    /// The epochs of one update; leaves the parameters changed even where it fails.
+    /// One update; leaves the parameters changed even where it fails.
+    fn update(
+        &mut self,
+        batch: &Batch,
+        advantage: &[f32],
+        progress: f64,
+        iteration: u64,
+    ) -> Result<UpdateMetrics, LearnError> {
+        let metrics = self.optimise(batch, advantage, progress, iteration)?;
+        let sound = self.params.iter().all(|p| p.is_finite());
+        sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+    }
+
+    /// The epochs of one update.
     fn optimise(
         &mut self,
         batch: &Batch,
@@ -232,28 +252,29 @@ impl<P: Policy> Ppo<P> {
 
 impl<P: Policy> Learner for Ppo<P> {
     fn params(&self) -> &[f32] {
-        &self.params
+        &self.actor.params
     }
 
     fn update(
         &mut self,
-        _executor: &dyn Executor,
+        executor: &dyn Executor,
         batch: &Batch,
         progress: f64,
         iteration: u64,
     ) -> Result<UpdateMetrics, LearnError> {
-        let targets = self.baseline.targets(batch, &self.config.advantages(), iteration)?;
-        let before = (self.params.clone(), self.adam.clone());
-        let result = self.optimise(batch, &targets.advantage, progress, iteration).and_then(|metrics| {
-            let sound = self.params.iter().all(|p| p.is_finite());
-            sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+        let Self { actor, baseline } = self;
+        let targets = baseline.targets(batch, &actor.config.advantages(), iteration)?;
+        let unsound = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
+        let before = (actor.params.clone(), actor.adam.clone(), baseline.save().map_err(unsound)?);
+        // Neither reads what the other writes, so they may run at once.
+        let (mut updated, mut fitted) = (Ok(UpdateMetrics::default()), Ok(()));
+        executor.both(&mut || updated = actor.update(batch, &targets.advantage, progress, iteration), &mut || {
+            fitted = baseline.fit(batch, &targets, progress, iteration);
         });
-        let result = result.and_then(|metrics| {
-            self.baseline.fit(batch, &targets, progress, iteration)?;
-            Ok(metrics)
-        });
+        let result = updated.and_then(|metrics| fitted.map(|()| metrics));
         if result.is_err() {
-            (self.params, self.adam) = before;
+            (actor.params, actor.adam) = (before.0, before.1);
+            baseline.load(&before.2).map_err(unsound)?;
         }
         result
     }
@@ -261,8 +282,8 @@ impl<P: Policy> Learner for Ppo<P> {
 
 impl<P: Policy> Persist for Ppo<P> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        with.vector("params", &mut self.params)?;
-        with.part("adam", &mut self.adam)?;
+        with.vector("params", &mut self.actor.params)?;
+        with.part("adam", &mut self.actor.adam)?;
         with.part("baseline", &mut self.baseline)
     }
 }

@@ -24,6 +24,16 @@ impl dyn Executor + '_ {
         });
         slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
     }
+
+    /// Calls both, at once where there are workers for it; `first` before `second` where there is one.
+    pub fn both<'a>(&self, first: &'a mut (dyn FnMut() + Send + 'a), second: &'a mut (dyn FnMut() + Send + 'a)) {
+        let jobs = [std::sync::Mutex::new(first), std::sync::Mutex::new(second)];
+        self.for_each(jobs.len(), &|i| {
+            if let Ok(mut job) = jobs[i].lock() {
+                job();
+            }
+        });
+    }
 }
 
 /// One job after the other on the calling thread.

@@ -51,6 +51,9 @@ impl Policy for Line {
     fn bind(&self, params: &[f32], tape: &mut LineTape) {
         (tape.w, tape.gradient) = (params[0], 0.0);
     }
+    fn clear(&self, tape: &mut LineTape) {
+        tape.gradient = 0.0;
+    }
     fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut LineTape) -> &'t [f32] {
         for (mean, o) in tape.mean.iter_mut().zip(rows.obs) {
             *mean = tape.w * o;
@@ -130,11 +133,11 @@ fn settings() -> PpoSettings {
 fn differentiate(batch: &Batch) -> ([f32; 2], Totals, [f32; 3]) {
     let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
     let advantage: Vec<f32> = batch.reward.iter().map(|&r| r as f32).collect();
-    ppo.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
-    let totals = ppo.step.run(&Line::new(), &params(), &ppo.config, 0.0);
+    ppo.actor.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
+    let totals = ppo.actor.step.run(&Line::new(), &params(), &ppo.actor.config, 0.0);
     let mut cotangent = [0.0; 3];
-    cotangent.copy_from_slice(&ppo.step.cotangent[..3]);
-    ([ppo.step.gradient[0], ppo.step.gradient[1]], totals, cotangent)
+    cotangent.copy_from_slice(&ppo.actor.step.cotangent[..3]);
+    ([ppo.actor.step.gradient[0], ppo.actor.step.gradient[1]], totals, cotangent)
 }
 
 /// -mean[min(ρ·A, clip(ρ, 0.8, 1.2)·A)] - 0.1·H, written down independently.

@@ -98,7 +98,7 @@ fn more_minibatches_allocate_no_more_often() {
                 let settings = PpoSettings { ppo, baseline: BaselineConfig::Mlp(value) };
                 let mut learner = Ppo::new(&settings, policy.clone(), policy.init(1, case.output_gain), 1);
                 learner.update(&Serial, &batch, 0.0, 0).unwrap();
-                measure(|| drop(learner.update(&Serial, &batch, 0.0, 1).unwrap())).count_total
+                measure(|| _ = learner.update(&Serial, &batch, 0.0, 1).unwrap()).count_total
             };
             assert_eq!(count(1), count(5), "{place:?}, {minibatch_rows} rows");
         }

@@ -169,8 +169,9 @@ impl Bootstrap {
         let mut times = vec![0_u32; sample.sorted.len()];
         let mut figures = Vec::with_capacity(self.resamples);
         for _ in 0..self.resamples {
-            for _ in 0..times.len() {
-                times[index_below(times.len(), stream)] += 1;
+            for _ in &sample.sorted {
+                let place = index_below(sample.sorted.len(), stream);
+                times[place] += 1;
             }
             let mut rest = &mut drawn.sorted[..];
             for (value, times) in sample.sorted.iter().zip(&mut times) {

@@ -56,7 +56,7 @@ fn update(policy: &Arc<HardwarePolicy>, params: &[f32], batch: &Batch, products:
         TrpoConfig { cg_iterations: products, cg_tolerance: 0.0, backtracks: steps, max_kl, ..TrpoConfig::default() };
     let settings = TrpoSettings { trpo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } };
     let mut trpo = Trpo::new(&settings, Arc::clone(policy), params.to_vec(), 1);
-    seconds(|| drop(trpo.update(&Serial, batch, 0.0, 0).expect("finite")))
+    seconds(|| _ = trpo.update(&Serial, batch, 0.0, 0).expect("finite"))
 }
 
 fn main() {
@@ -88,7 +88,7 @@ fn main() {
     let (cotangent, mut gradient) = (vec![0.1; policy.action_dim() * BLOCK], vec![0.0; params.len()]);
     policy.bind(&params, &mut tape);
     policy.bind_tangent(&params, &mut tape);
-    let forward = seconds(|| blocks.each(|rows| drop(std::hint::black_box(policy.forward(rows, &mut tape)))));
+    let forward = seconds(|| blocks.each(|rows| _ = std::hint::black_box(policy.forward(rows, &mut tape))));
     let with_vjp = seconds(|| {
         policy.bind(&params, &mut tape);
         blocks.each(|rows| {

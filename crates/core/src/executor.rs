@@ -9,9 +9,6 @@ pub trait Executor: Send + Sync {
 
     /// Calls `job(i)` for every `i < count`, on any thread and in any order.
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync));
-
-    /// Calls both, at once where there are threads for it.
-    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send));
 }
 
 impl dyn Executor + '_ {
@@ -27,6 +24,16 @@ impl dyn Executor + '_ {
         });
         slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
     }
+
+    /// Calls both, at once where there are workers for it; `first` before `second` where there is one.
+    pub fn both<'a>(&self, first: &'a mut (dyn FnMut() + Send + 'a), second: &'a mut (dyn FnMut() + Send + 'a)) {
+        let jobs = [std::sync::Mutex::new(first), std::sync::Mutex::new(second)];
+        self.for_each(jobs.len(), &|i| {
+            if let Ok(mut job) = jobs[i].lock() {
+                job();
+            }
+        });
+    }
 }
 
 /// One job after the other on the calling thread.
@@ -40,11 +47,6 @@ impl Executor for Serial {
 
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
         (0..count).for_each(job);
-    }
-
-    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
-        a();
-        b();
     }
 }
 
@@ -68,9 +70,5 @@ impl Executor for Threads {
 
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
         self.pool.install(|| (0..count).into_par_iter().for_each(job));
-    }
-
-    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
-        self.pool.join(a, b);
     }
 }

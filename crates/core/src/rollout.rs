@@ -67,6 +67,16 @@ impl Batch {
             .collect()
     }
 
+    /// Makes room for so many rows in all, and no more: what grows by doubling takes up to twice as much.
+    fn reserve(&mut self, rows: usize, policy: &HardwarePolicy) {
+        let more = rows - self.rows();
+        self.obs.reserve_exact(more * policy.obs_dim());
+        self.state.reserve_exact(more * policy.state_dim());
+        self.action.reserve_exact(more * policy.action_dim());
+        self.log_prob.reserve_exact(more);
+        self.reward.reserve_exact(more);
+    }
+
     fn append(&mut self, other: Self) {
         let at = self.rows();
         self.obs.extend(other.obs);
@@ -164,10 +174,13 @@ impl Sampler {
             let indices = first..(first + lanes as u64).min(episodes.indices.end);
             self.run(params, &Episodes { indices, ..episodes.clone() })
         });
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let rows = parts.iter().map(Batch::rows).sum::<usize>();
         let mut parts = parts.into_iter();
-        let mut batch = parts.next().unwrap_or_else(|| Ok(Batch::default()))?;
+        let mut batch = parts.next().unwrap_or_default();
+        batch.reserve(rows, &*self.policy);
         for part in parts {
-            batch.append(part?);
+            batch.append(part);
         }
         match batch.faults.first() {
             Some(fault) if batch.episodes.is_empty() => Err(fault.clone()),

@@ -165,12 +165,20 @@ impl Bootstrap {
             return Err(StatsError::Resamples(self.resamples));
         }
         let mut drawn = sample.clone();
+        // The sample is sorted, so how often each place was drawn sorts the resample, in linear time.
+        let mut times = vec![0_u32; sample.sorted.len()];
         let mut figures = Vec::with_capacity(self.resamples);
         for _ in 0..self.resamples {
-            for place in &mut drawn.sorted {
-                *place = sample.sorted[index_below(sample.sorted.len(), stream)];
+            for _ in &sample.sorted {
+                let place = index_below(sample.sorted.len(), stream);
+                times[place] += 1;
             }
-            drawn.sorted.sort_unstable_by(f64::total_cmp);
+            let mut rest = &mut drawn.sorted[..];
+            for (value, times) in sample.sorted.iter().zip(&mut times) {
+                let (same, others) = rest.split_at_mut(std::mem::take(times) as usize);
+                same.fill(*value);
+                rest = others;
+            }
             let figure = statistic(&drawn);
             if !figure.is_finite() {
                 return Err(StatsError::Statistic(figure));

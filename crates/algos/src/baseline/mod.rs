@@ -113,7 +113,7 @@ impl Baseline {
         let not_finite = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
         let before = self.save().map_err(not_finite)?;
         let (mut improved, mut fitted) = (Ok(T::default()), Ok(()));
-        executor.join(&mut || improved = improve(), &mut || {
+        executor.both(&mut || improved = improve(), &mut || {
             fitted = self.fit(batch, targets, progress, iteration);
         });
         let result = improved.and_then(|improved| fitted.map(|()| improved));

@@ -30,6 +30,8 @@ pub(super) struct Passes<P: Policy> {
 
 struct Worker<P: Policy> {
     tape: P::Tape,
+    /// Whether the tape holds the parameters of the pass at hand.
+    bound: bool,
     cotangent: Vec<f32>,
 }
 
@@ -63,20 +65,29 @@ impl<P: Policy> Passes<P> {
         log_std
     }
 
-    /// Calls `job` for each stretch of the rows with a worker bound to nothing, the place for results, and its blocks.
+    /// Calls `job` for each stretch of the rows with a worker, the place for results, and its blocks. Whoever works on the
+    /// first of its jobs is bound by `bind`: parameters are packed once a pass, not once a job.
     fn each(
         &self,
         executor: &dyn Executor,
         rows: &Minibatch,
+        bind: impl Fn(&mut P::Tape) + Sync,
         job: impl Fn(&mut Worker<P>, &mut Shard, &mut dyn Iterator<Item = Range<usize>>) + Sync,
     ) {
         let (each, count) = jobs(rows);
+        lock(&self.idle).iter_mut().for_each(|worker| worker.bound = false);
         executor.for_each(count, &|i| {
             let idle = lock(&self.idle).pop();
             let mut worker = idle.unwrap_or_else(|| Worker {
                 tape: self.policy.tape(BLOCK),
+                bound: false,
                 cotangent: vec![0.0; self.policy.action_dim() * BLOCK],
             });
+            if std::mem::replace(&mut worker.bound, true) {
+                self.policy.clear(&mut worker.tape);
+            } else {
+                bind(&mut worker.tape);
+            }
             job(&mut worker, &mut lock(&self.shards[i]), &mut rows.blocks().skip(i * each).take(each));
             lock(&self.idle).push(worker);
         });
@@ -111,27 +122,31 @@ impl<P: Policy> Passes<P> {
             })
         });
         let log_std = self.log_std(params, progress);
-        self.each(executor, rows, |worker, shard, blocks| {
-            self.policy.bind(params, &mut worker.tape);
-            shard.log_std_gradient.fill(0.0);
-            shard.surrogate = 0.0;
-            shard.old_mean.resize(actions * BLOCK * each, 0.0);
-            let kept = shard.old_mean.chunks_exact_mut(actions * BLOCK);
-            for (block, kept) in blocks.zip(kept) {
-                let taken = rows.rows(&block);
-                let mean = self.policy.forward(&taken, &mut worker.tape);
-                kept.copy_from_slice(&mean[..actions * BLOCK]);
-                let surrogate =
-                    Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
-                shard.surrogate += surrogate.sum();
-                surrogate.differentiate(&mut worker.cotangent, &mut shard.log_std_gradient);
-                self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
-            }
-            self.policy.gradient(&mut worker.tape, &mut shard.gradient);
-            if let Some(range) = self.policy.log_std_params() {
-                shard.gradient[range].copy_from_slice(&shard.log_std_gradient);
-            }
-        });
+        self.each(
+            executor,
+            rows,
+            |tape| self.policy.bind(params, tape),
+            |worker, shard, blocks| {
+                shard.log_std_gradient.fill(0.0);
+                shard.surrogate = 0.0;
+                shard.old_mean.resize(actions * BLOCK * each, 0.0);
+                let kept = shard.old_mean.chunks_exact_mut(actions * BLOCK);
+                for (block, kept) in blocks.zip(kept) {
+                    let taken = rows.rows(&block);
+                    let mean = self.policy.forward(&taken, &mut worker.tape);
+                    kept.copy_from_slice(&mean[..actions * BLOCK]);
+                    let surrogate =
+                        Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
+                    shard.surrogate += surrogate.sum();
+                    surrogate.differentiate(&mut worker.cotangent, &mut shard.log_std_gradient);
+                    self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
+                }
+                self.policy.gradient(&mut worker.tape, &mut shard.gradient);
+                if let Some(range) = self.policy.log_std_params() {
+                    shard.gradient[range].copy_from_slice(&shard.log_std_gradient);
+                }
+            },
+        );
         self.sum_gradients(rows, gradient);
         let shards = self.shards[..count].iter();
         -shards.map(|shard| lock(shard).surrogate).sum::<f64>() / rows.count.max(1) as f64
@@ -148,9 +163,11 @@ impl<P: Policy> Passes<P> {
         weight: &[f32],
         product: &mut [f64],
     ) {
-        self.each(executor, rows, |worker, shard, blocks| {
-            self.policy.bind(params, &mut worker.tape);
-            self.policy.bind_tangent(tangent, &mut worker.tape);
+        let bind = |tape: &mut P::Tape| {
+            self.policy.bind(params, tape);
+            self.policy.bind_tangent(tangent, tape);
+        };
+        self.each(executor, rows, bind, |worker, shard, blocks| {
             for block in blocks {
                 let taken = rows.rows(&block);
                 self.policy.forward(&taken, &mut worker.tape);
@@ -178,18 +195,22 @@ impl<P: Policy> Passes<P> {
     ) -> (f64, f64) {
         let actions = self.policy.action_dim();
         let (old, log_std) = (self.log_std(old, progress), self.log_std(params, progress));
-        self.each(executor, rows, |worker, shard, blocks| {
-            self.policy.bind(params, &mut worker.tape);
-            (shard.surrogate, shard.kl) = (0.0, 0.0);
-            let kept = shard.old_mean.chunks_exact(actions * BLOCK);
-            for (block, kept) in blocks.zip(kept) {
-                let mean = self.policy.forward(&rows.rows(&block), &mut worker.tape);
-                shard.kl += divergence((kept, &old), (mean, &log_std), block.len());
-                let surrogate =
-                    Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
-                shard.surrogate += surrogate.sum();
-            }
-        });
+        self.each(
+            executor,
+            rows,
+            |tape| self.policy.bind(params, tape),
+            |worker, shard, blocks| {
+                (shard.surrogate, shard.kl) = (0.0, 0.0);
+                let kept = shard.old_mean.chunks_exact(actions * BLOCK);
+                for (block, kept) in blocks.zip(kept) {
+                    let mean = self.policy.forward(&rows.rows(&block), &mut worker.tape);
+                    shard.kl += divergence((kept, &old), (mean, &log_std), block.len());
+                    let surrogate =
+                        Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
+                    shard.surrogate += surrogate.sum();
+                }
+            },
+        );
         let (mut surrogate, mut kl) = (0.0, 0.0);
         for shard in &self.shards[..jobs(rows).1] {
             let shard = lock(shard);

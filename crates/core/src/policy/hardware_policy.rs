@@ -248,6 +248,11 @@ impl Policy for HardwarePolicy {
         self.composition.program.bind(&params[self.range("design")], &mut tape.law);
     }
 
+    fn clear(&self, tape: &mut PolicyTape) {
+        self.controller.clear(&mut tape.controller);
+        tape.law.clear_uniform_cotangents();
+    }
+
     fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut PolicyTape) -> &'t [f32] {
         self.controller.forward(rows.obs, rows.count, &mut tape.controller);
         tape.fill_columns(self, rows);

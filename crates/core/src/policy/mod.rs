@@ -66,6 +66,8 @@ pub trait Policy: Send + Sync {
     fn tape(&self, max_rows: usize) -> Self::Tape;
     /// Takes over a parameter vector and clears the sums of cotangents.
     fn bind(&self, params: &[f32], tape: &mut Self::Tape);
+    /// Clears the sums of cotangents and keeps the parameters.
+    fn clear(&self, tape: &mut Self::Tape);
     /// The means of a block, `[A × tape rows]` column by column; the stride is the tape's `max_rows`.
     fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut Self::Tape) -> &'t [f32];
     /// Adds the gradient of Σ cotangent·mean over the block of the last forward; `cotangent` is laid out as the means.

@@ -195,6 +195,13 @@ impl Mlp {
                 let given = &params[l.at..l.bias_at()];
                 transpose(given, l.outputs, padded::<F>(l.inputs), &mut t.transposed);
             }
+        }
+        self.clear(tape);
+    }
+
+    /// Clears the sums of cotangents and keeps the parameters.
+    pub fn clear<F: Float>(&self, tape: &mut MlpTape<F>) {
+        for t in &mut tape.layers {
             t.weights_cotangent.fill(F::ZERO);
             t.bias_cotangent.fill(F::ZERO);
         }
@@ -272,9 +279,13 @@ fn pack<F: Float>(l: &Layer, params: &[F], weights: &mut [F], bias: &mut [F]) {
 
 /// Writes `from` `[_ × columns]` as its transpose with rows of `stride`.
 fn transpose<F: Float>(from: &[F], columns: usize, stride: usize, to: &mut [F]) {
-    for (j, to) in to.chunks_exact_mut(stride).enumerate() {
-        for (to, from) in to.iter_mut().zip(from.chunks_exact(columns)) {
-            *to = from[j];
+    // So few rows at once that the lines they lie in stay in the cache from one column to the next.
+    const ROWS: usize = 16;
+    for (block, rows) in from.chunks(ROWS * columns).enumerate() {
+        for (j, to) in to.chunks_exact_mut(stride).enumerate() {
+            for (to, from) in to[block * ROWS..].iter_mut().zip(rows.chunks_exact(columns)) {
+                *to = from[j];
+            }
         }
     }
 }

@@ -132,7 +132,7 @@ impl RunFolder {
     fn new(path: &Path, spec: &Spec, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         let lock = RunLock::take(path)?;
         let experiment = spec.to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
-        let about = "# The experiment as it was run, every setting resolved. `hwasp train` on this file repeats it.\n";
+        let about = "# The experiment as it was run, every setting resolved. `hwasp train` on this file repeats it, if it began afresh.\n";
         let head =
             [(EXPERIMENT, format!("{about}{experiment}").into_bytes()), (PROVENANCE, json(PROVENANCE, provenance)?)];
         let store = CheckpointStore::new(path, Arc::clone(&keeping.files), experiment_hash(&experiment));

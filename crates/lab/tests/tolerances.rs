@@ -69,14 +69,14 @@ fn sensitivities_are_those_of_perturbed_designs() {
     assert_eq!(found, self::found(&assembly, &params, &["stiffness[1]=0.5 N/m"], &*executor(3)));
 }
 
-/// Paired intervals are far narrower than those of the two evaluations.
+/// Paired intervals are narrower than those of the evaluations themselves, whose starts differ.
 #[test]
 fn pairing_narrows_the_intervals() {
     let (assembly, params) = springs();
     let found = found(&assembly, &params, &[], &Serial);
     let side = &found.parameters[0].minus;
     let (paired, alone) = (side.change.undiscounted_return, side.undiscounted_return);
-    assert!(10.0 * (paired.high - paired.low) < alone.high - alone.low, "{side:?}");
+    assert!(2.0 * (paired.high - paired.low) < alone.high - alone.low, "{side:?}");
 }
 
 #[test]

@@ -73,7 +73,7 @@ pub struct Catalogue {
 #[derive(Debug, Error)]
 pub enum CatalogueError {
     /// The file.
-    #[error("cannot read the catalogue {path}: {source}")]
+    #[error("cannot read the catalogue {path}: {source}\n  = hint: name a CSV file that may be read")]
     Read {
         /// Its name.
         path: String,
@@ -109,7 +109,7 @@ fn told(name: &str, faults: &[CatalogueFault]) -> String {
     let lines = faults.iter().take(MOST_SHOWN).map(|fault| format!("\n  {fault}")).collect::<String>();
     let more = faults.len().saturating_sub(MOST_SHOWN);
     let rest = if more > 0 { format!("\n  and {more} more") } else { String::new() };
-    format!("the catalogue {name} is wrong:{lines}{rest}")
+    format!("the catalogue {name} is wrong:{lines}{rest}\n  = hint: docs/parts.md has the columns and their limits")
 }
 
 impl Catalogue {

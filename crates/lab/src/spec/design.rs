@@ -54,12 +54,15 @@ pub struct InitialValue {
 }
 
 impl InitialSpec {
-    /// Every group at a value of its own, SI, in their order.
+    /// Every group at a value of its own, SI; the values are in the order of the groups.
     pub(crate) fn at(groups: &[GroupSpec], values: &[f64]) -> Self {
         let only = groups.len() == 1;
-        let value =
+        let initial =
             |(g, &value): (&GroupSpec, &f64)| InitialValue { group: g.name, value, dimension: g.dimension, only };
-        Self::Values(groups.iter().zip(values).map(value).collect())
+        let mut values: Vec<InitialValue> = groups.iter().zip(values).map(initial).collect();
+        // As they are read from a file.
+        values.sort_by_key(|value| value.group);
+        Self::Values(values)
     }
 }
 

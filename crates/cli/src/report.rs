@@ -129,7 +129,7 @@ pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile], left_out: 
     }
     if !left_out.is_empty() {
         let kinds: Vec<&str> = left_out.iter().map(|kind| kind.name()).collect();
-        let problem = spec.task.kind().name();
+        let problem = spec.task.name();
         let _ = writeln!(text, "  without {}: {problem} has no hand", kinds.join(", "));
     }
     text

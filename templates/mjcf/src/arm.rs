@@ -11,6 +11,8 @@ const MECHANISM: &str = include_str!("../mechanism.xml");
 pub(crate) const GRAVITY_MOMENT: f64 = 9.81 * (0.6 * 0.4 + 0.2 * 0.2);
 /// Steps of the engine in one of the controller. The law's torque is held meanwhile.
 const STEPS: usize = 4;
+/// Step of the controller, s: so many of the `timestep` in `mechanism.xml`.
+pub(crate) const TIME_STEP: f64 = STEPS as f64 * 0.005;
 
 /// The arm, at first upright and at rest.
 #[derive(Clone, Debug)]

@@ -12,8 +12,12 @@ const FRICTION: f64 = 0.1;
 const STOP: f64 = 1.5;
 /// What gravity does to the arm when it is level, m·g·l, N·m.
 pub(crate) const GRAVITY_MOMENT: f64 = MASS * 9.81 * LENGTH;
-/// Step of the integration, s; four of them are one step of the controller.
+/// Step of the integration, s.
 const STEP: f64 = 0.005;
+/// Steps of the integration in one of the controller. The law's torque is held meanwhile.
+const STEPS: usize = 4;
+/// Step of the controller, s.
+pub(crate) const TIME_STEP: f64 = STEPS as f64 * STEP;
 
 /// The arm, at first upright and at rest.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +41,7 @@ impl Arm {
 impl Plant for Arm {
     /// `effort` is what the law says: the torque on the arm, N·m.
     fn advance(&mut self, effort: &[f64], _command: &[f64]) {
-        for _ in 0..4 {
+        for _ in 0..STEPS {
             let torque = effort[0] + GRAVITY_MOMENT * self.angle.sin() - FRICTION * self.speed;
             self.speed += torque / (MASS * LENGTH * LENGTH) * STEP;
             self.angle += self.speed * STEP;

@@ -3,7 +3,7 @@
 use hwasp_core::{CommandPort, Dimension, EnvSpec, Plant, Port, Stream, Task};
 use rand::RngExt;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, TIME_STEP};
 
 /// What the motor gives at most, of either sign, N·m: not enough to hold the level arm without a spring.
 const MOTOR_LIMIT: f64 = 1.5;
@@ -32,6 +32,7 @@ impl Task for Hold {
                 hi: MOTOR_LIMIT,
             }],
             horizon: 100,
+            time_step: TIME_STEP,
         }
     }
 

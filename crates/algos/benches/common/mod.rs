@@ -63,6 +63,7 @@ pub(crate) fn hand(hidden: &[usize]) -> Arc<HardwarePolicy> {
         effort: law.ports().effort.iter().map(port).collect(),
         command: law.ports().command.iter().zip(&limits).map(motor).collect(),
         horizon: 500,
+        time_step: 0.05,
     };
     let spec = spec(law, hidden, vec![0.0; 11], vec![1.0; 11], 0.02);
     Arc::new(HardwarePolicy::new(spec, &env).expect("law and ports fit"))

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use hwasp_core::{End, Episode, ParamGroup, Rows, Serial};
+use hwasp_core::{End, Episode, ParamGroup, Rows, Serial, gaussian};
 
+use super::optimiser::Totals;
 use super::*;
 
 /// One command whose mean is w·o; the parameters are w and log σ.
@@ -50,6 +51,9 @@ impl Policy for Line {
     }
     fn bind(&self, params: &[f32], tape: &mut LineTape) {
         (tape.w, tape.gradient) = (params[0], 0.0);
+    }
+    fn clear(&self, tape: &mut LineTape) {
+        tape.gradient = 0.0;
     }
     fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut LineTape) -> &'t [f32] {
         for (mean, o) in tape.mean.iter_mut().zip(rows.obs) {

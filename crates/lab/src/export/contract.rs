@@ -113,7 +113,7 @@ impl Contract {
             format: "hwasp-contract-1",
             hwasp_version: env!("CARGO_PKG_VERSION"),
             experiment: spec.name.clone(),
-            task: spec.task.kind().name(),
+            task: spec.task.name(),
             method: spec.method.name(),
             seed: spec.seed,
             control: Control { period_s: env.time_step, rate_hz: 1.0 / env.time_step, horizon_steps: env.horizon },

@@ -22,6 +22,8 @@ pub(super) fn meaning(problem: &Problem, role: Role, name: &str) -> Option<&'sta
         Problem::Reach(_) => reach(name),
         Problem::Pendulum => pendulum(name),
         Problem::ZGrasp(grasp) | Problem::SpatialGrasp(grasp) => hand(grasp, role, name),
+        // Its author's names have to do.
+        Problem::Own(_) => None,
     }
 }
 

@@ -189,7 +189,7 @@ impl Source {
 
     /// The mechanism, to be written as `kind`.
     fn mechanism(&self, kind: Kind) -> Result<Mechanism, ExportError> {
-        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.kind().name() };
+        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name() };
         let hand = mechanism::hand(&self.spec).ok_or_else(none)?;
         if !self.path.join(DESIGN).is_file() {
             // Of a training that did not come to its end.

@@ -107,7 +107,7 @@ pub fn snap(assembly: &Assembly, params: &[f32], catalogue: &Catalogue, bench: &
 }
 
 fn hand(assembly: &Assembly) -> Result<HandDescription, PartsError> {
-    let problem = assembly.spec().task.kind().name();
+    let problem = assembly.spec().task.name();
     Ok(assembly.grasp_problem().map_err(|_| PartsError::NoHand { problem })?.hand())
 }
 
@@ -145,7 +145,7 @@ impl Snapped {
         PartsList {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
-            task: spec.task.kind().name().to_owned(),
+            task: spec.task.name().to_owned(),
             seed: spec.seed,
             catalogue: self.catalogue,
             bench: self.bench,

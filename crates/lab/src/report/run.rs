@@ -112,7 +112,7 @@ impl Run {
 
 /// Whether a file is about the run that it lies with.
 fn same_run(spec: &Spec, (name, method, task, seed): (&str, &str, &str, u64), file: &Path) -> Result<(), RunError> {
-    let run = (spec.name.as_str(), spec.method.name(), spec.task.kind().name(), spec.seed);
+    let run = (spec.name.as_str(), spec.method.name(), spec.task.name(), spec.seed);
     if (name, method, task, seed) == run {
         return Ok(());
     }

@@ -91,7 +91,7 @@ pub fn tolerances(
     Ok(Sensitivities {
         experiment: spec.name.clone(),
         method: spec.method.name().to_owned(),
-        task: spec.task.kind().name().to_owned(),
+        task: spec.task.name().to_owned(),
         seed: spec.seed,
         nominal: nominal.evaluation,
         parameters,

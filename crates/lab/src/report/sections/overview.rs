@@ -45,6 +45,7 @@ pub(in super::super) fn problem(spec: &Spec) -> String {
              the gear behind the motor is the design."
                 .to_owned()
         }
+        Problem::Own(_) => format!("The problem is {}, which is not one that comes with hwasp.", spec.task.name()),
         Problem::ZGrasp(_) | Problem::SpatialGrasp(_) => {
             let motion = match &spec.task.problem {
                 Problem::ZGrasp(_) => "up and down",

@@ -29,8 +29,8 @@ class Contest:
         self.foreign = max(foreign, 0.0) / (wall * os.cpu_count())
 
     def best(self, name):
-        """The setting that did best while all were tried."""
-        return max(self.rates[name], key=lambda setting: max(self.rates[name][setting][:TRIALS]))
+        """The setting with the highest median so far."""
+        return max(self.rates[name], key=lambda setting: statistics.median(self.rates[name][setting]))
 
     def median(self, name):
         """The median rate of a program with its best setting."""
@@ -42,7 +42,7 @@ class Contest:
         lines = [f"| program | setting | {unit}, median | lowest to highest | runs | {names[0]} is faster by |",
                  "|---|---|---|---|---|---|"]
         for name, settings in self.rates.items():
-            for setting, rates in sorted(settings.items(), key=lambda item: item[0] != self.best(name)):
+            for setting, rates in sorted(settings.items(), key=lambda item: -statistics.median(item[1])):
                 middle = statistics.median(rates)
                 span = f"{show(min(rates))} to {show(max(rates))}"
                 ratio = "" if name == names[0] else f"{self.median(names[0]) / middle:.2f}"

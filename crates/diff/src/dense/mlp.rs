@@ -450,3 +450,6 @@ impl<F: Float> WithSimd for Tangent<'_, F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

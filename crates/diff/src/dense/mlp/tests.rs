@@ -1,0 +1,45 @@
+//! The width of the processor's vectors changes no bit: AVX-512, AVX2 and plain numbers, as far as this processor has them.
+
+use pulp::Simd;
+
+use super::{Activation, Backward, Forward, Mlp, Tangent};
+
+/// Outputs, their tangents and the gradient over an odd number of rows, bit by bit.
+fn run<S: Simd>(simd: S, mlp: &Mlp) -> Vec<u32> {
+    const ROWS: usize = 13;
+    let entry = |i: usize| (12.9898 * (i + 1) as f64).sin() as f32;
+    let inputs = mlp.inputs();
+    let input: Vec<f32> = (0..ROWS * inputs).map(entry).collect();
+    let cotangent: Vec<f32> = (0..ROWS * mlp.outputs()).map(|i| entry(7 * i)).collect();
+    let params: Vec<f32> = (0..mlp.param_count()).map(|i| 0.3 * entry(3 * i)).collect();
+    let tape = &mut mlp.tape::<f32>(ROWS);
+    mlp.bind(&params, tape);
+    mlp.bind_tangent(&input.iter().cycle().copied().take(params.len()).collect::<Vec<_>>(), tape);
+    tape.rows = ROWS;
+    simd.vectorize(Forward { inputs, input: &input, tape });
+    simd.vectorize(Tangent { inputs, input: &input, tape });
+    simd.vectorize(Backward { inputs, input: &input, cotangent: &cotangent, tape });
+    let mut gradient = vec![0.0; params.len()];
+    mlp.gradient(tape, &mut gradient);
+    tape.output().0.iter().chain(tape.tangent().0).chain(&gradient).map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn the_width_of_vectors_changes_no_bit() {
+    // A narrow last layer and a wide one; widths that fill no vector.
+    for sizes in [&[3, 33, 20, 2][..], &[11, 50, 7]] {
+        let mlp = Mlp::new(sizes, Activation::Tanh, Activation::Tanh);
+        let plain = run(pulp::Scalar::new(), &mlp);
+        assert!(plain.iter().any(|&bits| bits != 0));
+        #[cfg(target_arch = "x86_64")]
+        {
+            let found = [
+                pulp::x86::V3::try_new().map(|simd| run(simd, &mlp)),
+                pulp::x86::V4::try_new().map(|simd| run(simd, &mlp)),
+            ];
+            for bits in found.into_iter().flatten() {
+                assert!(bits == plain, "{sizes:?}");
+            }
+        }
+    }
+}

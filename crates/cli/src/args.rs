@@ -258,6 +258,7 @@ pub(crate) struct ExportArgs {
 
 /// What is exported.
 #[derive(Debug, clap::Args)]
+#[allow(clippy::struct_excessive_bools)] // a flag for each kind
 #[command(next_help_heading = "Kinds [default: all that the run has]")]
 pub(crate) struct KindArgs {
     /// controller.onnx, and policy.onnx: the controller with the law of the hardware as built

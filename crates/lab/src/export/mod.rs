@@ -46,7 +46,7 @@ pub enum Kind {
     Urdf,
     /// Its printed parts as STL.
     Stl,
-    /// The same as an `OpenSCAD` file, with the parameters at its top.
+    /// The same as an OpenSCAD file, with the parameters at its top.
     Scad,
 }
 

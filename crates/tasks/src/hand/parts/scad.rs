@@ -1,4 +1,4 @@
-//! The same parts as an `OpenSCAD` file, for whoever wants them otherwise: every number that can be chosen is at its top.
+//! The same parts as an OpenSCAD file, for whoever wants them otherwise: every number that can be chosen is at its top.
 
 use std::fmt::Write;
 
@@ -9,10 +9,10 @@ use super::super::solid::SEGMENTS;
 use super::super::space::DESIGN_LEN;
 use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS, Stock, stock};
 
-/// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `stock.rs` in `OpenSCAD`'s language.
+/// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `stock.rs` in OpenSCAD's language.
 const MODULES: &str = include_str!("hand.scad");
 
-/// The parts in `OpenSCAD`'s language: parameters in mm, N·mm/rad and rad, then modules that make [`parts`](super::parts) of them.
+/// The parts in OpenSCAD's language: parameters in mm, N·mm/rad and rad, then modules that make [`parts`](super::parts) of them.
 pub fn scad(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -> Result<String, HandError> {
     stock.check(hand, design)?;
     let mut text = String::from("// An underactuated hand. Lengths in mm, angles in rad.\n\n");

@@ -19,8 +19,8 @@ use hwasp_core::{
 };
 use hwasp_lab::SavedRun;
 use hwasp_mujoco::engine::{BodyId, Simulation, Wrench};
-use hwasp_mujoco::grasp::{Grasp, GraspTask, Object, SUBSTEPS};
-use hwasp_tasks::hand::{MjcfOptions, mjcf, names};
+use hwasp_mujoco::grasp::{Grasp, GraspTask, Object};
+use hwasp_tasks::hand::{MjcfOptions, SUBSTEPS, mjcf, names};
 use serde_json::json;
 
 /// What the physics were given in one step.

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use hwasp_core::{End, Episode, ParamGroup, Rows, Serial};
+use hwasp_core::{End, Episode, ParamGroup, Rows, Serial, gaussian};
 
+use super::optimiser::Totals;
 use super::*;
 
 /// One command whose mean is w·o; the parameters are w and log σ.

@@ -1,5 +1,5 @@
 //! One generation of the searches, the scores for nothing, on one thread: `cargo bench -p hwasp-algos --bench searches`.
-//! `scripts/cma_peer.py` has the same for Hansen's program.
+//! `benches/peers` has the same for Hansen's program.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hwasp_algos::{Ars, ArsConfig, Cmaes, CmaesConfig, Search};

@@ -83,11 +83,10 @@ pub(crate) fn tolerances(of: &Sensitivities) -> String {
     let mut text = format!("\n{experiment} · {method} · seed {seed}: tolerances\n\n  {}\n", heading(nominal));
     text.push_str(&evaluated("as designed", nominal));
     let widest = parameters.iter().take(MOST_SHOWN).map(|p| p.name.len()).max().unwrap_or(0).max("parameter".len());
-    let _ = writeln!(
-        text,
-        "\n  {:<widest$}  {:>18}{:>10}   {:<30}{}",
-        "parameter", "designed", "error", "change of return", "of success, points"
-    );
+    let success = if nominal.success.is_empty() { "" } else { "of success, points" };
+    let heading =
+        format!("  {:<widest$}  {:>18}{:>10}   {:<30}{success}", "parameter", "designed", "error", "change of return");
+    let _ = writeln!(text, "\n{}", heading.trim_end());
     for parameter in parameters.iter().take(MOST_SHOWN) {
         let designed = quantity(parameter.nominal, &parameter.unit);
         for (sign, side) in [("−", &parameter.minus), ("+", &parameter.plus)] {

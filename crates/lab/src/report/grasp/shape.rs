@@ -6,12 +6,12 @@ use super::view::{Flat, View, World, along};
 
 /// A broken line through positions of the picture, closed.
 pub(super) fn polygon(corners: &[Flat]) -> String {
-    open(corners) + "z"
+    polyline(corners) + "z"
 }
 
 /// A straight line.
 pub(super) fn line(from: Flat, to: Flat) -> String {
-    open(&[from, to])
+    polyline(&[from, to])
 }
 
 /// A dot, for a pen with a round tip.
@@ -19,8 +19,8 @@ pub(super) fn dot(place: Flat) -> String {
     format!("M{}h0", pair(place.map(f64::round)))
 }
 
-/// The steps from corner to corner, which are short numbers.
-fn open(corners: &[Flat]) -> String {
+/// A broken line, by the steps from corner to corner, which are short numbers.
+pub(super) fn polyline(corners: &[Flat]) -> String {
     let mut path = String::new();
     let mut from = [0.0; 2];
     for (i, corner) in corners.iter().enumerate() {

@@ -7,7 +7,7 @@ use hwasp_mujoco::grasp::ShapeKind;
 use maud::{Markup, html};
 
 use super::pose::{Pose, Poses};
-use super::shape::{Ellipse, dot, faces, line, polygon};
+use super::shape::{Ellipse, dot, faces, line, polygon, polyline};
 use super::view::{Flat, View, World, along, inner, minus};
 
 /// The order in which links are painted: second finger, first finger, thumb, of each the proximal link first.
@@ -116,10 +116,10 @@ impl Sketch {
                 let (near, far) = if view.sees(stretched[2]) { (end(1.0), end(-1.0)) } else { (end(-1.0), end(1.0)) };
                 let [near, far] = [near, far].map(|end| Ellipse::seen(view, end, &stretched[..2]));
                 let [x, y] = view.flat(stretched[2]);
-                // Seen end on, there is no side.
-                let across = [-y, x];
-                let back = [y, -x];
-                let side = polygon(&[near.support(across), near.support(back), far.support(back), far.support(across)]);
+                let (across, back) = ([-y, x], [y, -x]);
+                // Open towards the far end, where only the ellipse has an edge; the near one lies over the other end.
+                let side =
+                    polyline(&[far.support(across), near.support(across), near.support(back), far.support(back)]);
                 [far.path(1.0, [0.0; 2]), side, near.path(1.0, [0.0; 2])]
             }
         }

@@ -11,6 +11,9 @@ use crate::parts::JointParts;
 use crate::plot::bars;
 use crate::text::Shown;
 
+/// The most parameters of a group that are shown one by one; `design.toml` has all.
+const MOST_BARS: usize = 1000;
+
 pub(in super::super) fn section(run: &Run) -> Section {
     let groups = &run.design.groups;
     let body = html! {
@@ -21,7 +24,7 @@ pub(in super::super) fn section(run: &Run) -> Section {
             }
             None => (table(groups)),
         }
-        @for group in groups.iter().filter(|group| group.position.len() > 1) { (each(group)) }
+        @for group in groups.iter().filter(|group| (2..=MOST_BARS).contains(&group.position.len())) { (each(group)) }
     };
     Section { id: "design", title: "The design", body }
 }

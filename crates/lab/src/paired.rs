@@ -104,14 +104,14 @@ impl Change {
 mod tests {
     use super::*;
 
-    fn trial(undiscounted_return: f64, success: bool) -> Option<Trial> {
-        Some(Trial { undiscounted_return, success: Some(success) })
+    fn trial(undiscounted_return: f64, success: bool) -> Trial {
+        Trial { undiscounted_return, success: Some(success) }
     }
 
     #[test]
     fn differences_are_taken_episode_by_episode() {
-        let before = [trial(100.0, true), trial(-50.0, false), None, trial(7.0, true)];
-        let after = [trial(99.0, false), trial(-51.0, false), trial(1.0, true), None];
+        let before = [Some(trial(100.0, true)), Some(trial(-50.0, false)), None, Some(trial(7.0, true))];
+        let after = [Some(trial(99.0, false)), Some(trial(-51.0, false)), Some(trial(1.0, true)), None];
         let change = Change::between(&before, &after, 1).unwrap();
         // Returns far apart, and each but one lower: there is nothing uncertain about it.
         let one = MeanInterval { mean: -1.0, low: -1.0, high: -1.0 };

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use std::f64::consts::TAU;
+use std::fmt::Write;
 
 use hwasp_lab::parts::{Bench, Catalogue, JointParts, Reason, SelectError, TorsionSpring, select, unfit};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
@@ -172,10 +173,10 @@ fn every_wrong_row_is_told_with_its_line() {
         "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm\n\u{0}",
     ] {
         let error = Catalogue::parse("mine.csv", text.as_bytes()).unwrap_err();
-        transcript.push_str(&format!("\n\n{text:?}\n{error}"));
+        write!(transcript, "\n\n{text:?}\n{error}").unwrap();
     }
     let broken = Catalogue::parse("mine.csv", b"part,wire_mm\n\xff\xfe,1\n").unwrap_err();
-    transcript.push_str(&format!("\n\n{broken}"));
+    write!(transcript, "\n\n{broken}").unwrap();
     let many = catalogue(&"x,1\n".repeat(50)).unwrap_err();
     assert!(many.contains("\n  and 30 more\n") && many.lines().count() == 23, "{many}");
     insta::assert_snapshot!(transcript);

@@ -42,10 +42,9 @@ pub(crate) fn run(args: &PartsArgs) -> Result<(), Failure> {
     };
     let list = snapped.list(assembly, worth);
     list.write(&folder)?;
-    let mut text = report::parts::parts(&list);
-    text.push_str(&format!("\n  {}: {PARTS}, {SHEET}", folder.display()));
-    text.push_str(if list.worth.tuned.is_some() { ", tuned/\n" } else { "\n" });
-    Ok(output::print(&text)?)
+    let further = if list.worth.tuned.is_some() { ", tuned/" } else { "" };
+    let written = format!("\n  {}: {PARTS}, {SHEET}{further}\n", folder.display());
+    Ok(output::print(&(report::parts::parts(&list) + &written))?)
 }
 
 /// Trains the controller further, unless that is done already, and simulates it.

@@ -24,7 +24,6 @@ pub(crate) fn run(args: &TolerancesArgs) -> Result<(), Failure> {
     })?;
     let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
     found.write(&folder)?;
-    let mut text = report::parts::tolerances(&found);
-    text.push_str(&format!("\n  {}: {TOLERANCES}, {}\n", folder.display(), PICTURES.join(", ")));
-    Ok(output::print(&text)?)
+    let written = format!("\n  {}: {TOLERANCES}, {}\n", folder.display(), PICTURES.join(", "));
+    Ok(output::print(&(report::parts::tolerances(&found) + &written))?)
 }

@@ -106,7 +106,8 @@ impl fmt::Display for CatalogueFault {
 }
 
 fn told(name: &str, faults: &[CatalogueFault]) -> String {
-    let lines = faults.iter().take(MOST_SHOWN).map(|fault| format!("\n  {fault}")).collect::<String>();
+    let shown = faults.iter().take(MOST_SHOWN);
+    let lines = shown.fold(String::new(), |lines, fault| format!("{lines}\n  {fault}"));
     let more = faults.len().saturating_sub(MOST_SHOWN);
     let rest = if more > 0 { format!("\n  and {more} more") } else { String::new() };
     format!("the catalogue {name} is wrong:{lines}{rest}\n  = hint: docs/parts.md has the columns and their limits")

@@ -178,7 +178,7 @@ impl Sampler {
         let rows = parts.iter().map(Batch::rows).sum::<usize>();
         let mut parts = parts.into_iter();
         let mut batch = parts.next().unwrap_or_default();
-        batch.reserve(rows, &*self.policy);
+        batch.reserve(rows, &self.policy);
         for part in parts {
             batch.append(part);
         }

@@ -89,7 +89,7 @@ pub enum Problem {
     SpatialGrasp(GraspProblem),
     /// One that the program brings along; it writes its own name.
     #[serde(untagged)]
-    Own(OwnTask),
+    Own(Box<OwnTask>),
 }
 
 /// What both mass-spring problems have.
@@ -299,7 +299,7 @@ impl TaskSpec {
             Chosen::Own(own) => {
                 let read = own.read(&mut s);
                 s.finish();
-                return read.map(|(horizon, own)| Self { horizon, problem: Problem::Own(own) });
+                return read.map(|(horizon, own)| Self { horizon, problem: Problem::Own(Box::new(own)) });
             }
         };
         let usual = match kind {

@@ -1,7 +1,5 @@
 //! Parts and tolerances.
 
-use std::fs;
-
 use crate::sandbox::{Sandbox, without_figures};
 
 #[test]
@@ -68,7 +66,7 @@ fn parts_of_a_hand() {
 
     let longer = sandbox.refused(&["parts hand --episodes 3 --fine-tune 480"]);
     assert!(longer.contains("hand/build/tuned exists already"), "{longer}");
-    fs::write(sandbox.path("file"), "").unwrap();
+    sandbox.write("file", "");
     let blocked = sandbox.run("parts hand --episodes 2 --out file");
     let errors = String::from_utf8_lossy(&blocked.stderr).into_owned();
     assert!(blocked.status.code() == Some(1) && errors.contains("hint: name another folder with --out"), "{errors}");

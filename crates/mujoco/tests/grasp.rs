@@ -4,7 +4,7 @@
 
 use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
 use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, Inertia, Ramp, Script, ShapeKind, Viewpoint};
+use hwasp_mujoco::grasp::{Grasp, GraspError, GraspPlant, GraspSettings, GraspTask, Inertia, Ramp, Script, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names, urdf,
@@ -310,6 +310,39 @@ fn doing_nothing_is_no_success() {
     }
     assert!((-320.0..-170.0).contains(&total), "{total}");
     assert!(!robot.outcome().unwrap().success && !robot.plant().touching().contains(&true));
+}
+
+/// What is paid for coming nearer adds up to how much nearer the palm is at the end; what is paid for a success comes with
+/// the last step, and only where there is one.
+#[test]
+fn training_can_pay_for_approach_and_success() {
+    let mut plain = GraspSettings { offset: 0.02, ..settings(ShapeKind::Sphere) };
+    plain.hand.transmission.tension_limit = 163.0;
+    let mut paid = plain.clone();
+    (paid.reward.approach, paid.reward.success) = (300.0, 50.0);
+    let play = |settings: &GraspSettings, design: &[f64]| {
+        let grasp = Grasp::new(settings.clone()).unwrap();
+        let mut robot = grasp.robot(None);
+        let beside = |robot: &hwasp_core::Robot<GraspTask>| {
+            let (palm, object) = (robot.plant().palm(), robot.plant().object_position());
+            (palm[0] - object[0]).hypot(palm[1] - object[1])
+        };
+        robot.reset(&mut rng(1));
+        let before = beside(&robot);
+        let (total, _) = Script::default().play(&mut robot, &grasp, design, &mut rng(1));
+        (total, before - beside(&robot), robot.outcome().unwrap().success)
+    };
+    let mut seen = [false; 2];
+    let slack = SEARCHED.map(|value| 0.3 * value); // pulls too little to hold anything
+    for design in [&SEARCHED, &slack] {
+        let (without, _, _) = play(&plain, design);
+        let (with, nearer, success) = play(&paid, design);
+        let wanted = 300.0 * nearer + if success { 50.0 } else { 0.0 };
+        assert!((with - without - wanted).abs() < 1e-9, "{with} - {without} is not {wanted}");
+        assert!(nearer.abs() > 1e-4, "{nearer}");
+        seen[usize::from(success)] = true;
+    }
+    assert_eq!(seen, [true; 2], "one of the designs holds, the other does not");
 }
 
 #[test]

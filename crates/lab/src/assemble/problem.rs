@@ -107,7 +107,8 @@ fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
     let deployment = grasp_settings(p, spec);
     // What lifts more than it has to is safe where it has to.
     let load = hwasp_mujoco::grasp::Ramp { first: 1.0, last: p.safety_factor, progress: p.safety_growth };
-    let training = hwasp_mujoco::grasp::GraspSettings { load_ramp: Some(load), ..deployment.clone() };
+    let mut training = hwasp_mujoco::grasp::GraspSettings { load_ramp: Some(load), ..deployment.clone() };
+    (training.reward.approach, training.reward.success) = (p.approach_reward, p.success_reward);
     let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
     Ok(Problems { training: world(make(training)?), deployment: world(make(deployment)?), optimum })
 }

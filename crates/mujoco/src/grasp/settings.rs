@@ -53,7 +53,8 @@ pub enum Inertia {
     Physical,
 }
 
-/// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]).
+/// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]). The last two
+/// are ours, and zero unless asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GraspReward {
     /// Per metre between palm and object.
@@ -62,11 +63,22 @@ pub struct GraspReward {
     pub contact: f64,
     /// Heights of the object's lowest point, m, rising, and what is given from there on.
     pub height: Vec<(f64, f64)>,
+    /// Per metre by which palm and object came nearer to each other, seen from above, in the step. Over an episode it adds up
+    /// to what start and end differ by (shaping by a potential: Ng, Harada and Russell, ICML 1999).
+    pub approach: f64,
+    /// For the last step of a success.
+    pub success: f64,
 }
 
 impl Default for GraspReward {
     fn default() -> Self {
-        Self { distance: -2.0, contact: 0.1, height: vec![(0.005, 0.5), (0.020, 1.0), (0.050, 2.0), (0.100, 4.0)] }
+        Self {
+            distance: -2.0,
+            contact: 0.1,
+            height: vec![(0.005, 0.5), (0.020, 1.0), (0.050, 2.0), (0.100, 4.0)],
+            approach: 0.0,
+            success: 0.0,
+        }
     }
 }
 

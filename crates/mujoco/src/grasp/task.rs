@@ -33,6 +33,8 @@ pub struct GraspTask {
     /// The last [`HOLD_STEPS`] steps, step t at t modulo their number.
     moments: Vec<Moment>,
     taken: usize,
+    /// From the palm to the object as seen from above, at the end of the last step, m.
+    beside: f64,
     kind: &'static str,
     /// How far training has come.
     progress: f64,
@@ -41,7 +43,7 @@ pub struct GraspTask {
 impl GraspTask {
     pub(super) fn new(settings: GraspSettings) -> Self {
         let kind = settings.shapes[0].name();
-        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, kind, progress: 1.0 }
+        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, beside: 0.0, kind, progress: 1.0 }
     }
 
     /// Whether the last steps were a hold.
@@ -58,6 +60,11 @@ impl GraspTask {
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// How far one is from being above the other, m.
+fn beside(palm: [f64; 3], object: [f64; 3]) -> f64 {
+    (palm[0] - object[0]).hypot(palm[1] - object[1])
 }
 
 impl Task for GraspTask {
@@ -101,6 +108,7 @@ impl Task for GraspTask {
         // Settings were checked: what is drawn from them is a body.
         let started = plant.start(object, top + above, rng);
         debug_assert!(started.is_ok(), "{started:?}");
+        self.beside = beside(plant.palm(), plant.object_position());
     }
 
     fn observe(&self, plant: &GraspPlant, out: &mut [f64]) {
@@ -125,7 +133,10 @@ impl Task for GraspTask {
         let reward = &self.settings.reward;
         let distal = [1, 3, 5].iter().filter(|&&link| touching[link]).count();
         let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
-        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted
+        let before = std::mem::replace(&mut self.beside, beside(palm, object));
+        let held = if self.taken == self.settings.horizon && self.success() { reward.success } else { 0.0 };
+        let nearer = reward.approach * (before - self.beside);
+        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer + held
     }
 
     fn outcome(&self) -> Option<Outcome> {

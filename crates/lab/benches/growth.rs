@@ -26,28 +26,28 @@ struct Axis {
 const AXES: &[Axis] = &[
     Axis {
         name: "springs in the graph",
-        of: "iteration of 4,000 steps",
+        of: "an iteration of 4,000 steps",
         expected: "time 1, memory 1",
         values: &[10, 100, 1000, 10_000],
         run: |n| iteration(10, 4000, 1, &[("task.segments", &n.to_string())]),
     },
     Axis {
         name: "springs in the action",
-        of: "iteration of 4,000 steps",
+        of: "an iteration of 4,000 steps",
         expected: "time 1, memory 1",
         values: &[10, 100, 1000, 10_000],
         run: |n| iteration(4, 4000, 1, &[("method", "minimal"), ("task.segments", &n.to_string())]),
     },
     Axis {
         name: "width of both hidden layers",
-        of: "iteration of 4,000 steps",
+        of: "an iteration of 4,000 steps",
         expected: "time 2, memory 2",
         values: &[32, 64, 128, 256, 512, 1024],
         run: |n| iteration(4, 4000, 1, &[("controller.hidden", &format!("[{n}, {n}]"))]),
     },
     Axis {
         name: "episodes of an iteration (PPO)",
-        of: "iteration of as many episodes of 200 steps",
+        of: "an iteration of as many episodes of 200 steps",
         expected: "time 1, memory 1",
         values: &[1, 4, 16, 64, 256, 1024, 4096],
         run: |n| {
@@ -57,7 +57,7 @@ const AXES: &[Axis] = &[
     },
     Axis {
         name: "rows of a batch (TRPO)",
-        of: "iteration of as many steps",
+        of: "an iteration of as many steps",
         expected: "time 1, memory 1",
         values: &[1000, 10_000, 100_000, 1_000_000],
         run: |n| {
@@ -68,7 +68,7 @@ const AXES: &[Axis] = &[
     },
     Axis {
         name: "threads (TRPO, 128 wide)",
-        of: "iteration of 20,000 steps",
+        of: "an iteration of 20,000 steps",
         expected: "time -1",
         values: &[1, 2],
         run: |n| {
@@ -79,14 +79,14 @@ const AXES: &[Axis] = &[
     },
     Axis {
         name: "dimensions of CMA-ES, separable",
-        of: "generation",
+        of: "a generation",
         expected: "time 1 (and the logarithm of the population), memory 1",
         values: &[100, 1000, 10_000, 100_000, 1_000_000],
         run: |n| generation(n as usize, true, 100_000_u64.div_ceil(n).max(3)),
     },
     Axis {
         name: "dimensions of CMA-ES, full",
-        of: "generation, decompositions among them",
+        of: "a generation, decompositions among them",
         expected: "time 2 (and the logarithm of the population), memory 2",
         values: &[25, 50, 100, 200, 400, 800, 1600],
         run: |n| generation(n as usize, false, 2 * n + 20),
@@ -123,7 +123,7 @@ fn memory() -> f64 {
 }
 
 fn table(axis: &Axis) -> Result<(), Box<dyn Error>> {
-    println!("\n### {}\n\nTime of an {}. Expected exponents: {}.\n", axis.name, axis.of, axis.expected);
+    println!("\n### {}\n\nTime of {}. Expected exponents: {}.\n", axis.name, axis.of, axis.expected);
     println!("| {} | ms | exponent | memory, MB | exponent |\n|---|---|---|---|---|", axis.name);
     let mut before: Option<(f64, f64, f64)> = None;
     for &value in axis.values {

@@ -89,17 +89,7 @@ impl Environment for Recorder {
 fn repeat(simulation: &mut Simulation, recording: &Recording) -> Result<(), Box<dyn Error + Send + Sync>> {
     let (geom, floor) = (simulation.geom(names::OBJECT_GEOM)?, simulation.geom(names::FLOOR)?);
     let bodies = [simulation.body(names::PALM)?, simulation.body(names::OBJECT)?];
-    let object = &recording.object;
-    let sliding = [geom, floor].map(|geom| {
-        let [_, spin, roll] = simulation.friction(geom);
-        (geom, [object.friction, spin, roll])
-    });
-    let mut edit = simulation.edit();
-    edit.shape(geom, object.shape())?.inertial(bodies[1], object.mass, object.inertia)?;
-    for (geom, friction) in sliding {
-        edit.friction(geom, friction)?;
-    }
-    drop(edit);
+    recording.object.enter(simulation, bodies[1], geom, floor)?;
     simulation.qpos_mut().copy_from_slice(&recording.start);
     for given in &recording.steps {
         simulation.ctrl_mut().copy_from_slice(&given.controls);

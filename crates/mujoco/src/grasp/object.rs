@@ -4,7 +4,7 @@ use hwasp_core::Stream;
 use rand::RngExt;
 
 use super::settings::{GraspSettings, Inertia, ShapeKind};
-use crate::engine::Shape;
+use crate::engine::{BodyId, EditError, GeomId, Shape, Simulation};
 
 /// An object and where it lies.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +71,30 @@ impl Object {
     pub fn bounding_box(&self) -> [f64; 3] {
         let [x, y, z] = self.size;
         if self.lying { [z, y, x] } else { [x, y, z] }
+    }
+
+    /// Gives the model's object its shape, its inertia and, with the floor, its friction. Where it lies is [`Self::pose`].
+    ///
+    /// # Errors
+    /// Where the engine does not take them for those of a body.
+    pub fn enter(
+        &self,
+        simulation: &mut Simulation,
+        body: BodyId,
+        geom: GeomId,
+        floor: GeomId,
+    ) -> Result<(), EditError> {
+        let [on_object, on_floor] = [geom, floor].map(|geom| {
+            let [_, spin, roll] = simulation.friction(geom);
+            [self.friction, spin, roll]
+        });
+        simulation
+            .edit()
+            .shape(geom, self.shape())?
+            .inertial(body, self.mass, self.inertia)?
+            .friction(geom, on_object)?
+            .friction(floor, on_floor)?;
+        Ok(())
     }
 
     /// Position and orientation (w, x, y, z) at rest on the floor.

@@ -165,18 +165,7 @@ impl GraspPlant {
     /// Starts an episode: open hand above an object at rest.
     pub(super) fn start(&mut self, object: Object, palm_height: f64, rng: &mut Stream) -> Result<(), EditError> {
         let places = &self.places;
-        let sliding = object.friction;
-        let friction = |sim: &Simulation, geom| {
-            let [_, spin, roll] = sim.friction(geom);
-            [sliding, spin, roll]
-        };
-        let (on_object, on_floor) = (friction(&self.sim, places.object_geom[0]), friction(&self.sim, places.floor));
-        let mut edit = self.sim.edit();
-        edit.shape(places.object_geom[0], object.shape())?
-            .inertial(places.object_body, object.mass, object.inertia)?
-            .friction(places.object_geom[0], on_object)?
-            .friction(places.floor, on_floor)?;
-        drop(edit);
+        object.enter(&mut self.sim, places.object_body, places.object_geom[0], places.floor)?;
         let state = self.sim.qpos_mut();
         state[places.object..][..7].copy_from_slice(&object.pose());
         self.target = [0.0, 0.0, palm_height];

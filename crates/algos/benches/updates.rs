@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use hwasp_algos::{
-    BaselineConfig, FisherRows, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Trpo, TrpoConfig,
-    TrpoSettings, advantages,
+    BaselineConfig, FisherRows, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Shown, Trpo,
+    TrpoConfig, TrpoSettings, advantages,
 };
 use hwasp_core::Serial;
 
 use common::{batch, hand, hand_batch, springs};
 
-const LINEAR: BaselineConfig = BaselineConfig::Linear { ridge: 1e-5, privileged: false };
+const LINEAR: BaselineConfig = BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false };
 
 fn gae(c: &mut Criterion) {
     let (problem, policy) = springs(&[32, 32]);
@@ -55,7 +55,7 @@ fn iteration(c: &mut Criterion) {
     group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(30);
     group.bench_function("rollout", |b| b.iter(|| batch(&problem, &policy, 20, 200)));
     group.bench_function("update", |b| b.iter(|| ppo.update(&Serial, &full, 0.0, 0).expect("finite")));
-    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), 2, 4, 1);
+    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), Shown { obs: 2, state: 4, context: 0 }, 1);
     let targets: Vec<f32> = full.obs.iter().step_by(2).copied().collect();
     group.bench_function("fit of the value network", |b| b.iter(|| value.fit(&full, &targets, 0.0, 0)));
 }

@@ -93,8 +93,22 @@ mod tests {
         Batch {
             reward: vec![1.0, 2.0, 3.0, 4.0, 5.0],
             episodes: vec![
-                Episode { rows: 0..3, end: End::Truncated, last_obs: vec![], last_state: vec![], outcome: None },
-                Episode { rows: 3..5, end: End::Terminated, last_obs: vec![], last_state: vec![], outcome: None },
+                Episode {
+                    rows: 0..3,
+                    end: End::Truncated,
+                    last_obs: vec![],
+                    last_state: vec![],
+                    context: vec![],
+                    outcome: None,
+                },
+                Episode {
+                    rows: 3..5,
+                    end: End::Terminated,
+                    last_obs: vec![],
+                    last_state: vec![],
+                    context: vec![],
+                    outcome: None,
+                },
             ],
             ..Batch::default()
         }

@@ -16,7 +16,7 @@ mod trpo;
 
 pub use adam::{Adam, AdamConfig};
 pub use archive::{Archive, Array, Element, Exchange, Persist, StateError};
-pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig};
+pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig, Shown};
 pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
 pub use ppo::{Ppo, PpoConfig, PpoSettings};

@@ -19,7 +19,7 @@ use self::fisher::Fisher;
 use self::line_search::backtrack;
 use self::passes::Passes;
 use crate::archive::{Exchange, Persist, StateError};
-use crate::baseline::Baseline;
+use crate::baseline::{Baseline, Shown};
 use crate::learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
 use crate::minibatch::Minibatch;
 
@@ -57,7 +57,7 @@ struct TrustRegion<P: Policy> {
 impl<P: Policy> Trpo<P> {
     /// Starts from `params`. `seed` names the streams of the curvature's rows and of the baseline.
     pub fn new(settings: &TrpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
-        let baseline = Baseline::new(&settings.baseline, policy.obs_dim(), policy.state_dim(), seed);
+        let baseline = Baseline::new(&settings.baseline, Shown::to(&*policy), seed);
         Self { region: TrustRegion::new(settings.trpo.clone(), policy, params, seed), baseline }
     }
 }
@@ -119,13 +119,14 @@ impl<P: Policy> TrustRegion<P> {
         // xᵀHx with Hx = g - r.
         let terms = gradient.iter().zip(&solution.residual).zip(&solution.x);
         let curved: f64 = terms.map(|((g, r), x)| x * (g - r)).sum();
-        let length = (2.0 * self.config.max_kl / (curved + LEAST_CURVATURE)).sqrt();
+        let max_kl = self.config.max_kl_at(progress);
+        let length = (2.0 * max_kl / (curved + LEAST_CURVATURE)).sqrt();
         if !length.is_finite() || solution.x.iter().any(|x| !x.is_finite()) {
             return Err(not_finite("the step"));
         }
         let direction = scaled(&solution.x);
         let (params, candidate, passes, batch) = (&self.params, &mut self.candidate, &self.passes, &self.batch);
-        let found = backtrack(start, &self.config, |fraction| {
+        let found = backtrack(start, max_kl, &self.config, |fraction| {
             for ((to, from), x) in candidate.iter_mut().zip(params).zip(&direction) {
                 *to = (f64::from(*from) - fraction * length * x) as f32;
             }

@@ -55,7 +55,10 @@ fn reach_is_learned_by_trpo() {
         damping: 0.1,
         ..TrpoConfig::default()
     };
-    let settings = TrpoSettings { trpo: config, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } };
+    let settings = TrpoSettings {
+        trpo: config,
+        baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false },
+    };
     for place in [Placement::Graph, Placement::Action] {
         let case = Case::reach(place);
         let before = case.judge(&case.sampler.policy().init(3, 1.0)).0;

@@ -90,7 +90,7 @@ fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
 /// What can be seen of one moment; at the start the reward is 0 and the end is none.
 #[derive(Clone, Debug)]
 struct Moment {
-    parts: [(&'static str, Vec<f64>); 4],
+    parts: [(&'static str, Vec<f64>); 5],
     end: Option<End>,
 }
 
@@ -99,15 +99,23 @@ impl Moment {
     fn look(env: &dyn Environment, step: usize, reward: f64, end: Option<End>) -> Result<Self, EnvFault> {
         let mut observation = vec![f64::NAN; env.spec().observation.len()];
         let mut state = vec![f64::NAN; env.spec().state.len()];
+        let mut context = vec![f64::NAN; env.spec().context.len()];
         env.observe(&mut observation);
         env.state(&mut state);
+        env.context(&mut context);
         let code = match end {
             None => 0.0,
             Some(End::Terminated) => 1.0,
             Some(End::Truncated) => 2.0,
             Some(End::Faulted) => 3.0,
         };
-        let parts = [("observation", observation), ("state", state), ("reward", vec![reward]), ("end", vec![code])];
+        let parts = [
+            ("observation", observation),
+            ("state", state),
+            ("context", context),
+            ("reward", vec![reward]),
+            ("end", vec![code]),
+        ];
         let moment = Self { parts, end };
         for (kind, values) in &moment.parts {
             if let Some(index) = values.iter().position(|v| !v.is_finite()) {

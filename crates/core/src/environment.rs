@@ -61,6 +61,8 @@ pub struct EnvSpec {
     pub observation: Vec<Port>,
     /// What only the law sees: the plant's state at the interface.
     pub state: Vec<Port>,
+    /// What an episode is about and no sensor tells, such as the mass of an object: for baselines alone.
+    pub context: Vec<Port>,
     /// What the mechanism gives the plant.
     pub effort: Vec<Port>,
     /// The motors.
@@ -102,6 +104,9 @@ pub trait Task: Send {
     /// Writes what the controller sees, in SI.
     fn observe(&self, plant: &Self::Plant, out: &mut [f64]);
 
+    /// Writes what the episode is about and no sensor tells, in SI; called once, after the start.
+    fn context(&self, _plant: &Self::Plant, _out: &mut [f64]) {}
+
     /// The reward of having arrived at this state under `command`; called once a step, so that a task may keep count.
     fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
@@ -132,6 +137,9 @@ pub trait Environment: Send {
 
     /// Writes what only the law sees, in SI.
     fn state(&self, out: &mut [f64]);
+
+    /// Writes what the episode is about and no sensor tells, in SI.
+    fn context(&self, _out: &mut [f64]) {}
 
     /// One control step. Commands are limited to their ports' ranges by the environment itself.
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step;
@@ -199,6 +207,10 @@ impl<T: Task> Environment for Robot<T> {
 
     fn state(&self, out: &mut [f64]) {
         self.plant.state(out);
+    }
+
+    fn context(&self, out: &mut [f64]) {
+        self.task.context(&self.plant, out);
     }
 
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {

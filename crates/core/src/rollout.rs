@@ -25,6 +25,8 @@ pub struct Episode {
     pub last_obs: Vec<f32>,
     /// The law's state there, SI.
     pub last_state: Vec<f32>,
+    /// What the episode was about and no sensor told, SI.
+    pub context: Vec<f32>,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
 }
@@ -338,6 +340,7 @@ impl<'p> Lanes<'p> {
         let widths = [obs_dim, self.policy.state_dim(), self.policy.action_dim(), 1];
         let mut at = 0;
         let (mut seen, mut state) = (vec![0.0; obs_dim], vec![0.0; widths[1]]);
+        let mut context = vec![0.0; self.policy.context_dim()];
         for (e, end) in self.ends.iter().enumerate() {
             let (end, len) = end.unwrap_or((End::Truncated, self.horizon));
             if end == End::Faulted {
@@ -356,9 +359,11 @@ impl<'p> Lanes<'p> {
             self.environments[e].observe(&mut seen);
             self.policy.normalize(&seen, &mut last_obs);
             self.environments[e].state(&mut state);
-            let last_state = state.iter().map(|&x| x as f32).collect();
+            self.environments[e].context(&mut context);
+            let single = |values: &[f64]| values.iter().map(|&x| x as f32).collect();
+            let (last_state, context) = (single(&state), single(&context));
             let outcome = self.environments[e].outcome();
-            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state, outcome });
+            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state, context, outcome });
             at += len;
         }
         let batch = &mut self.batch;

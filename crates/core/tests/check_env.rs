@@ -80,6 +80,7 @@ impl Point {
         let mut spec = EnvSpec {
             observation: vec![port("x"), port("2x")],
             state: vec![port("x")],
+            context: vec![],
             effort: vec![port("force")],
             command: vec![CommandPort { name: "motor".into(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
             horizon: horizon.unwrap_or(HORIZON),

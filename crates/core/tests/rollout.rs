@@ -114,10 +114,17 @@ const BAD_STEP: usize = 4;
 impl Clock {
     fn made(habit: Habit) -> Arc<dyn hwasp_core::MakeEnvironment> {
         Arc::new(move |horizon: Option<usize>| -> Box<dyn Environment> {
-            let mut spec = common::env_spec();
+            let mut spec = Self::shown();
             spec.horizon = horizon.unwrap_or(HORIZON);
             Box::new(Self { spec, habit, start: 0.0, taken: 0 })
         })
+    }
+
+    /// What it shows: the start is its context, too.
+    fn shown() -> EnvSpec {
+        let mut spec = common::env_spec();
+        spec.context = vec![spec.state[1].clone()];
+        spec
     }
 
     fn length(start: f64) -> usize {
@@ -140,6 +147,10 @@ impl Environment for Clock {
 
     fn state(&self, out: &mut [f64]) {
         out.copy_from_slice(&[-(self.taken as f64), self.start]);
+    }
+
+    fn context(&self, out: &mut [f64]) {
+        out.copy_from_slice(&[self.start]);
     }
 
     fn step(&mut self, _effort: &[f64], _command: &[f64]) -> Step {
@@ -170,7 +181,7 @@ fn sampler(habit: Habit) -> (Sampler, Vec<f32>) {
     let mut spec = common::policy_spec(common::all_placements().remove(3));
     spec.observation_center = vec![0.0; 3];
     spec.observation_scale = vec![1.0; 3];
-    let policy = hwasp_core::HardwarePolicy::new(spec, &common::env_spec()).unwrap();
+    let policy = hwasp_core::HardwarePolicy::new(spec, &Clock::shown()).unwrap();
     let params = policy.init(1, 1.0);
     (Sampler::new(Arc::new(policy), Clock::made(habit), None), params)
 }
@@ -201,6 +212,7 @@ fn episodes_that_end_early_leave_no_gaps() {
                 row += 1;
             }
             assert_eq!(episode.last_obs, [start as f32, length as f32, 0.0]);
+            assert_eq!(episode.context, [start as f32]);
         }
         assert!(ends[0] > 5 && ends[1] > 5, "both ends should be seen: {ends:?}");
         assert_eq!(batch.rows(), row);

@@ -70,6 +70,10 @@ impl Environment for Recorder {
         self.robot.state(out);
     }
 
+    fn context(&self, out: &mut [f64]) {
+        self.robot.context(out);
+    }
+
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         let step = self.robot.step(effort, command);
         let simulation = self.robot.plant().simulation();

@@ -43,6 +43,10 @@ impl Environment for Timed {
         self.inner.state(out);
     }
 
+    fn context(&self, out: &mut [f64]) {
+        self.inner.context(out);
+    }
+
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         let began = Instant::now();
         let step = self.inner.step(effort, command);

@@ -65,6 +65,7 @@ impl Task for Deliver {
         EnvSpec {
             observation: seen.clone(),
             state: seen,
+            context: vec![],
             effort: vec![port("force", Dimension::Force)],
             command: vec![CommandPort {
                 name: "motor".to_owned(),

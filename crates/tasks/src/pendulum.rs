@@ -214,6 +214,7 @@ impl Task for SwingUp {
                 port("speed", Dimension::AngularSpeed),
             ],
             state: vec![port("angle", Dimension::Angle), port("speed", Dimension::AngularSpeed)],
+            context: vec![],
             effort: vec![port("torque", Dimension::Torque)],
             command: vec![CommandPort {
                 name: "motor".to_owned(),

@@ -186,6 +186,7 @@ impl Task for ReachTask {
         EnvSpec {
             observation: vec![port("x", Dimension::Length)],
             state: vec![port("x", Dimension::Length)],
+            context: vec![],
             effort: vec![port("velocity", Dimension::Speed)],
             command: vec![CommandPort { name: "speed".to_owned(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
             horizon: self.horizon,

@@ -37,6 +37,10 @@ impl Environment for Recorder {
         self.inner.state(out);
     }
 
+    fn context(&self, out: &mut [f64]) {
+        self.inner.context(out);
+    }
+
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         let step = self.inner.step(effort, command);
         let mut state = [0.0; 4];

@@ -24,6 +24,7 @@ impl Task for Hold {
         EnvSpec {
             observation: both.clone(),
             state: both,
+            context: vec![],
             effort: vec![port("torque", Dimension::Torque)],
             command: vec![CommandPort {
                 name: "motor".to_owned(),

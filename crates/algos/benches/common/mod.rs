@@ -60,6 +60,7 @@ pub(crate) fn hand(hidden: &[usize]) -> Arc<HardwarePolicy> {
     let env = EnvSpec {
         observation: (0..11).map(|i| port(&format!("seen {i}"))).collect(),
         state: law.ports().state.iter().map(port).collect(),
+        context: vec![],
         effort: law.ports().effort.iter().map(port).collect(),
         command: law.ports().command.iter().zip(&limits).map(motor).collect(),
         horizon: 500,
@@ -95,6 +96,7 @@ pub(crate) fn hand_batch(policy: &HardwarePolicy, params: &[f32], rows: usize) -
             end: End::Truncated,
             last_obs: obs[..seen].to_vec(),
             last_state: batch.state[batch.state.len() - states..].to_vec(),
+            context: vec![],
             outcome: None,
         });
         batch.obs.extend(obs);

@@ -54,7 +54,8 @@ fn update(policy: &Arc<HardwarePolicy>, params: &[f32], batch: &Batch, products:
     let max_kl = if steps > 0 { 0.0 } else { 0.01 };
     let trpo =
         TrpoConfig { cg_iterations: products, cg_tolerance: 0.0, backtracks: steps, max_kl, ..TrpoConfig::default() };
-    let settings = TrpoSettings { trpo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } };
+    let settings =
+        TrpoSettings { trpo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false } };
     let mut trpo = Trpo::new(&settings, Arc::clone(policy), params.to_vec(), 1);
     seconds(|| _ = trpo.update(&Serial, batch, 0.0, 0).expect("finite"))
 }

@@ -3,23 +3,23 @@
 use hwasp_core::{Batch, Episode};
 use nalgebra::{DMatrix, DVector};
 
+use super::Shown;
 use crate::archive::{Exchange, Persist, StateError};
 
 /// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o what it sees, clipped to ±10, and a = t/100
-/// the time in the episode. It sees the controller's input, and where it is privileged the law's state beside it.
+/// the time in the episode. It sees the controller's input, and where it is told to the law's state and the episode's context.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearBaseline {
     coefficients: Vec<f64>,
-    obs_dim: usize,
-    /// How many components of the state it sees: all or none.
-    state_dim: usize,
+    /// What it sees, of the state and of the context all or nothing.
+    seen: Shown,
     ridge: f64,
 }
 
 impl LinearBaseline {
-    /// Zero everywhere until the first fit. A `state_dim` of zero makes it see no more than the controller does.
-    pub fn new(obs_dim: usize, state_dim: usize, ridge: f64) -> Self {
-        Self { coefficients: vec![0.0; 2 * (obs_dim + state_dim) + 4], obs_dim, state_dim, ridge }
+    /// Zero everywhere until the first fit.
+    pub fn new(seen: Shown, ridge: f64) -> Self {
+        Self { coefficients: vec![0.0; 2 * (seen.obs + seen.state + seen.context) + 4], seen, ridge }
     }
 
     /// Calls `each` with row and features of every step of the episode, and with those of the state after it.
@@ -30,20 +30,21 @@ impl LinearBaseline {
         features: &mut [f64],
         mut each: impl FnMut(Option<usize>, &[f64]),
     ) {
+        let Shown { obs: obs_dim, state: state_dim, context } = self.seen;
         let steps = episode.rows.clone().map(Some).chain([None]);
         for (time, row) in steps.enumerate() {
             let (obs, state) = match row {
-                Some(row) => (&batch.obs[row * self.obs_dim..], batch.state.get(row * self.state_dim..).unwrap_or(&[])),
+                Some(row) => (&batch.obs[row * obs_dim..], batch.state.get(row * state_dim..).unwrap_or(&[])),
                 None => (&episode.last_obs[..], &episode.last_state[..]),
             };
-            let seen = obs[..self.obs_dim].iter().chain(&state[..self.state_dim]);
-            let (first, rest) = features.split_at_mut(self.obs_dim + self.state_dim);
+            let seen = obs[..obs_dim].iter().chain(&state[..state_dim]).chain(&episode.context[..context]);
+            let (first, rest) = features.split_at_mut(obs_dim + state_dim + context);
             for ((&o, first), second) in seen.zip(first).zip(&mut *rest) {
                 let o = f64::from(o).clamp(-10.0, 10.0);
                 (*first, *second) = (o, o * o);
             }
             let a = time as f64 / 100.0;
-            rest[self.obs_dim + self.state_dim..].copy_from_slice(&[a, a * a, a * a * a, 1.0]);
+            rest[obs_dim + state_dim + context..].copy_from_slice(&[a, a * a, a * a * a, 1.0]);
             each(row, features);
         }
     }
@@ -108,6 +109,10 @@ mod tests {
     use super::*;
     use hwasp_core::End;
 
+    fn seen(state: usize) -> Shown {
+        Shown { obs: 1, state, context: 0 }
+    }
+
     #[test]
     fn recovers_a_function_of_its_features() {
         let rows = 200;
@@ -122,11 +127,12 @@ mod tests {
                 end: End::Truncated,
                 last_obs: vec![0.25],
                 last_state: vec![],
+                context: vec![],
                 outcome: None,
             }],
             ..Batch::default()
         };
-        let mut baseline = LinearBaseline::new(1, 0, 1e-5);
+        let mut baseline = LinearBaseline::new(seen(0), 1e-5);
         assert_eq!(baseline.predict(&batch).0, vec![0.0; rows]);
         baseline.fit(&batch, &targets);
         let (values, last) = baseline.predict(&batch);
@@ -149,6 +155,7 @@ mod tests {
                 end: End::Truncated,
                 last_obs: vec![0.5],
                 last_state: vec![],
+                context: vec![],
                 outcome: None,
             }],
             ..Batch::default()
@@ -156,7 +163,7 @@ mod tests {
         let features = |o: f64, a: f64| [o, o * o, a, a * a, a * a * a, 1.0];
         let (first, second, last) = (features(10.0, 0.0), features(-1.0, 0.01), features(0.5, 0.02));
         let wanted: f64 = (0..6).map(|i| (first[i] + second[i]) * last[i]).sum();
-        let mut baseline = LinearBaseline::new(1, 0, 1e12);
+        let mut baseline = LinearBaseline::new(seen(0), 1e12);
         baseline.fit(&batch, &[1e12, 1e12]);
         assert!((f64::from(baseline.predict(&batch).1[0]) - wanted).abs() < 1e-5 * wanted);
         // The share of the time: 0.01·0.02, far below the rest.
@@ -164,6 +171,20 @@ mod tests {
         early.coefficients[..2].fill(0.0);
         early.coefficients[5] = 0.0;
         assert!((f64::from(early.predict(&batch).1[0]) - 2e-4).abs() < 1e-6);
+    }
+
+    /// Two episodes that look the same and end differently.
+    #[test]
+    fn sees_the_context_where_it_is_told_to() {
+        let (batch, targets) = super::super::tests::two_that_look_alike();
+        let worst = |context| {
+            let mut baseline = LinearBaseline::new(Shown { context, ..seen(0) }, 1e-5);
+            baseline.fit(&batch, &targets);
+            let (values, last) = baseline.predict(&batch);
+            let off = values.iter().zip(&targets).chain(last.iter().zip(&[10.0, -10.0])).map(|(v, t)| (v - t).abs());
+            off.fold(0.0, f32::max)
+        };
+        assert!(worst(1) < 1e-3 && worst(0) > 5.0, "{} and {}", worst(1), worst(0));
     }
 
     #[test]
@@ -180,12 +201,13 @@ mod tests {
                 end: End::Truncated,
                 last_obs: vec![0.5],
                 last_state: vec![1.0],
+                context: vec![],
                 outcome: None,
             }],
             ..Batch::default()
         };
         let error = |state_dim| {
-            let mut baseline = LinearBaseline::new(1, state_dim, 1e-5);
+            let mut baseline = LinearBaseline::new(seen(state_dim), 1e-5);
             baseline.fit(&batch, &targets);
             let (values, last) = baseline.predict(&batch);
             let errors = values.iter().zip(&targets).map(|(v, t)| (v - t).abs());

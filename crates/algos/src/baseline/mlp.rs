@@ -1,11 +1,12 @@
 //! A perceptron as value function.
 
-use hwasp_core::{Batch, Purpose, stream};
+use hwasp_core::{Batch, Episode, Purpose, stream};
 use hwasp_diff::{Activation, Mlp, MlpTape};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
+use super::Shown;
 use crate::adam::{Adam, AdamConfig, clip_norm};
 use crate::archive::{Exchange, Persist, StateError};
 use crate::minibatch::BLOCK;
@@ -21,6 +22,7 @@ use crate::minibatch::BLOCK;
 /// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
 /// | `max_grad_norm` | 0.5 | longest gradient |
 /// | `privileged` | false | also sees the law's state, which the controller does not |
+/// | `context` | false | also sees what the episode is about and no sensor tells |
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MlpBaselineConfig {
     /// Widths of the hidden layers.
@@ -38,6 +40,8 @@ pub struct MlpBaselineConfig {
     /// Whether it also sees the law's state. Only the controller has to do without it, and only after training
     /// (asymmetric actor-critic: Pinto et al. 2018).
     pub privileged: bool,
+    /// Whether it also sees the episode's context: what of the return no action decides is then no noise to the advantages.
+    pub context: bool,
 }
 
 impl Default for MlpBaselineConfig {
@@ -50,6 +54,7 @@ impl Default for MlpBaselineConfig {
             minibatch_rows: 1000,
             max_grad_norm: Some(0.5),
             privileged: false,
+            context: false,
         }
     }
 }
@@ -64,12 +69,22 @@ pub struct MlpBaseline {
     adam: Adam,
     /// Running mean and second moment of the targets; none before the first fit.
     moments: Option<(f64, f64)>,
-    /// Centre and scale of each state component that it sees, from the first batch.
+    /// Centre and scale of each component that it sees of state and context, from the first batch.
     scaling: Vec<(f32, f32)>,
-    obs_dim: usize,
-    state_dim: usize,
+    shown: Shown,
+    /// Of which it sees so much.
+    seen: Shown,
     seed: u64,
     tape: MlpTape<f32>,
+}
+
+/// Mean and standard deviation, the latter 1 where nothing varies.
+fn centre_and_scale<'a>(values: impl Iterator<Item = &'a f32> + Clone) -> (f32, f32) {
+    let n = values.clone().count().max(1) as f64;
+    let values = values.map(|&x| f64::from(x));
+    let mean = values.clone().sum::<f64>() / n;
+    let std = (values.map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+    (mean as f32, if std > 0.0 { std as f32 } else { 1.0 })
 }
 
 /// How far the running moments move towards each batch.
@@ -77,9 +92,10 @@ const MOMENT_RATE: f64 = 0.1;
 
 impl MlpBaseline {
     /// Zero or near zero everywhere until the first fit.
-    pub fn new(config: MlpBaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
-        let seen = if config.privileged { state_dim } else { 0 };
-        let mut sizes = vec![obs_dim + seen];
+    pub fn new(config: MlpBaselineConfig, shown: Shown, seed: u64) -> Self {
+        let seen = shown.seen(config.privileged, config.context);
+        let beside = seen.state + seen.context;
+        let mut sizes = vec![seen.obs + beside];
         sizes.extend(&config.hidden);
         sizes.push(1);
         let network = Mlp::new(&sizes, Activation::Tanh, Activation::Identity);
@@ -87,33 +103,37 @@ impl MlpBaseline {
         let params = network.init(0.1, || weights.random::<f64>());
         let adam = Adam::new(AdamConfig::default(), params.len());
         let tape = network.tape(BLOCK);
-        let scaling = vec![(0.0, 1.0); seen];
-        Self { config, network, params, adam, moments: None, scaling, obs_dim, state_dim, seed, tape }
+        let scaling = vec![(0.0, 1.0); beside];
+        Self { config, network, params, adam, moments: None, scaling, shown, seen, seed, tape }
     }
 
-    /// Takes centre and scale of the state from a batch.
+    /// Takes centre and scale of state and context from a batch.
     fn take_scaling(&mut self, batch: &Batch) {
-        let n = batch.rows().max(1) as f64;
-        for (s, scaling) in self.scaling.iter_mut().enumerate() {
-            let column = || batch.state.iter().skip(s).step_by(self.state_dim).map(|&x| f64::from(x));
-            let mean = column().sum::<f64>() / n;
-            let std = (column().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
-            *scaling = (mean as f32, if std > 0.0 { std as f32 } else { 1.0 });
+        let (states, contexts) = self.scaling.split_at_mut(self.seen.state);
+        for (s, scaling) in states.iter_mut().enumerate() {
+            *scaling = centre_and_scale(batch.state.iter().skip(s).step_by(self.shown.state));
+        }
+        for (c, scaling) in contexts.iter_mut().enumerate() {
+            *scaling = centre_and_scale(batch.episodes.iter().map(|episode| &episode.context[c]));
         }
     }
 
-    /// Writes what the network sees of one row.
+    /// Writes what the network sees at one moment of the episode.
     #[inline]
-    fn fill(&self, obs: &[f32], state: &[f32], to: &mut [f32]) {
-        to[..self.obs_dim].copy_from_slice(obs);
-        for ((to, x), (centre, scale)) in to[self.obs_dim..].iter_mut().zip(state).zip(&self.scaling) {
+    fn fill(&self, obs: &[f32], state: &[f32], episode: &Episode, to: &mut [f32]) {
+        let (first, beside) = to.split_at_mut(self.seen.obs);
+        first.copy_from_slice(obs);
+        let seen = state[..self.seen.state].iter().chain(&episode.context[..self.seen.context]);
+        for ((to, x), (centre, scale)) in beside.iter_mut().zip(seen).zip(&self.scaling) {
             *to = (x - centre) / scale;
         }
     }
 
     fn fill_row(&self, batch: &Batch, row: usize, to: &mut [f32]) {
-        let obs = &batch.obs[row * self.obs_dim..][..self.obs_dim];
-        self.fill(obs, &batch.state[row * self.state_dim..][..self.state_dim], to);
+        let Shown { obs, state, .. } = self.shown;
+        let episode = batch.episodes.partition_point(|episode| episode.rows.end <= row);
+        let state = &batch.state[row * state..][..state];
+        self.fill(&batch.obs[row * obs..][..obs], state, &batch.episodes[episode], to);
     }
 
     fn scale(&self) -> (f64, f64) {
@@ -131,7 +151,7 @@ impl MlpBaseline {
         }
         let mut last = vec![0.0; batch.episodes.len() * width];
         for (episode, to) in batch.episodes.iter().zip(last.chunks_exact_mut(width)) {
-            self.fill(&episode.last_obs, &episode.last_state, to);
+            self.fill(&episode.last_obs, &episode.last_state, episode, to);
         }
         let mut run = |seen: &[f32]| {
             let mut values = Vec::with_capacity(seen.len() / width);
@@ -231,7 +251,9 @@ impl Persist for MlpBaseline {
 mod tests {
     use super::*;
     use crate::archive::Array;
-    use hwasp_core::{End, Episode};
+    use hwasp_core::End;
+
+    const SHOWN: Shown = Shown { obs: 1, state: 0, context: 0 };
 
     fn batch(rows: usize) -> (Batch, Vec<f32>) {
         let obs: Vec<f32> = (0..rows).map(|i| ((i * 37 % 101) as f32) / 50.0 - 1.0).collect();
@@ -241,6 +263,7 @@ mod tests {
             end: End::Truncated,
             last_obs: vec![0.5],
             last_state: vec![],
+            context: vec![],
             outcome: None,
         }];
         (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)
@@ -250,7 +273,7 @@ mod tests {
     fn learns_a_parabola_far_from_zero() {
         let (batch, targets) = batch(400);
         let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 600, ..MlpBaselineConfig::default() };
-        let mut baseline = MlpBaseline::new(config, 1, 0, 5);
+        let mut baseline = MlpBaseline::new(config, SHOWN, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let (values, last) = baseline.predict(&batch);
         let worst = values.iter().zip(&targets).map(|(v, t)| (v - t).abs()).fold(0.0, f32::max);
@@ -258,10 +281,25 @@ mod tests {
         assert!((last[0] + 280.0).abs() < 4.0, "{}", last[0]);
     }
 
+    /// Two episodes that look the same and end differently.
+    #[test]
+    fn sees_the_context_where_it_is_told_to() {
+        let (batch, targets) = super::super::tests::two_that_look_alike();
+        let worst = |context| {
+            let config = MlpBaselineConfig { context, minibatch_rows: 10, epochs: 600, ..MlpBaselineConfig::default() };
+            let mut baseline = MlpBaseline::new(config, Shown { context: 1, ..SHOWN }, 5);
+            baseline.fit(&batch, &targets, 0.0, 0);
+            let (values, last) = baseline.predict(&batch);
+            let off = values.iter().zip(&targets).chain(last.iter().zip(&[10.0, -10.0])).map(|(v, t)| (v - t).abs());
+            off.fold(0.0, f32::max)
+        };
+        assert!(worst(true) < 1.0 && worst(false) > 5.0, "{} and {}", worst(true), worst(false));
+    }
+
     /// The message named the third moment of a state that has one or three.
     #[test]
     fn moments_that_are_no_pair_are_refused() {
-        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 0, 5);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), SHOWN, 5);
         let mut archive = baseline.save().unwrap();
         for count in [1, 3] {
             archive.insert("moments".into(), Array::F64(vec![0.5; count]));
@@ -273,7 +311,7 @@ mod tests {
     #[test]
     fn moving_the_moments_does_not_move_the_values() {
         let (batch, targets) = batch(100);
-        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), 1, 0, 5);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), SHOWN, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let before = baseline.predict(&batch).0;
         baseline.follow(&vec![1000.0; 100]);

@@ -6,7 +6,7 @@ mod mlp;
 pub use linear::LinearBaseline;
 pub use mlp::{MlpBaseline, MlpBaselineConfig};
 
-use hwasp_core::{Batch, Executor};
+use hwasp_core::{Batch, Executor, Policy};
 use serde::{Deserialize, Serialize};
 
 use crate::archive::{Exchange, Persist, StateError};
@@ -22,9 +22,35 @@ pub enum BaselineConfig {
         ridge: f64,
         /// Whether it also sees the law's state.
         privileged: bool,
+        /// Whether it also sees the episode's context.
+        context: bool,
     },
     /// A perceptron.
     Mlp(MlpBaselineConfig),
+}
+
+/// How many components there are of what an environment shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Of the controller's input.
+    pub obs: usize,
+    /// Of the law's state.
+    pub state: usize,
+    /// Of what an episode is about.
+    pub context: usize,
+}
+
+impl Shown {
+    /// What a policy's batches have.
+    pub fn to(policy: &impl Policy) -> Self {
+        Self { obs: policy.obs_dim(), state: policy.state_dim(), context: policy.context_dim() }
+    }
+
+    /// What is left of it for one that sees the state or does not, and the context or not.
+    fn seen(self, state: bool, context: bool) -> Self {
+        let seen = |sees, count| if sees { count } else { 0 };
+        Self { state: seen(state, self.state), context: seen(context, self.context), ..self }
+    }
 }
 
 /// A value baseline.
@@ -37,15 +63,13 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// A fresh one for observations of `obs_dim` components and a state of `state_dim`.
-    pub fn new(config: &BaselineConfig, obs_dim: usize, state_dim: usize, seed: u64) -> Self {
+    /// A fresh one for what an environment shows.
+    pub fn new(config: &BaselineConfig, shown: Shown, seed: u64) -> Self {
         match config {
-            BaselineConfig::Linear { ridge, privileged } => {
-                Self::Linear(LinearBaseline::new(obs_dim, if *privileged { state_dim } else { 0 }, *ridge))
+            BaselineConfig::Linear { ridge, privileged, context } => {
+                Self::Linear(LinearBaseline::new(shown.seen(*privileged, *context), *ridge))
             }
-            BaselineConfig::Mlp(config) => {
-                Self::Mlp(Box::new(MlpBaseline::new(config.clone(), obs_dim, state_dim, seed)))
-            }
+            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), shown, seed))),
         }
     }
 
@@ -130,5 +154,31 @@ impl Persist for Baseline {
             Self::Linear(linear) => with.part("linear", linear),
             Self::Mlp(mlp) => with.part("mlp", &mut **mlp),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwasp_core::{End, Episode};
+
+    /// Two episodes of 20 rows that show a controller the same and are worth 10 and -10, and a context of 0.3 and 0.5.
+    pub(super) fn two_that_look_alike() -> (Batch, Vec<f32>) {
+        let episode = |i: usize| Episode {
+            rows: 20 * i..20 * (i + 1),
+            end: End::Truncated,
+            last_obs: vec![0.5],
+            last_state: vec![],
+            context: vec![0.3 + 0.2 * i as f32],
+            outcome: None,
+        };
+        let batch = Batch {
+            obs: vec![0.5; 40],
+            reward: vec![0.0; 40],
+            episodes: vec![episode(0), episode(1)],
+            ..Batch::default()
+        };
+        let targets = (0..40).map(|row| if row < 20 { 10.0 } else { -10.0 }).collect();
+        (batch, targets)
     }
 }

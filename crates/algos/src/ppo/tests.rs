@@ -40,6 +40,9 @@ impl Policy for Line {
     fn state_dim(&self) -> usize {
         0
     }
+    fn context_dim(&self) -> usize {
+        0
+    }
     fn log_std_params(&self) -> Option<Range<usize>> {
         Some(1..2)
     }
@@ -106,6 +109,7 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
                 end: End::Terminated,
                 last_obs: vec![0.0],
                 last_state: vec![],
+                context: vec![],
                 outcome: None,
             })
             .collect(),
@@ -127,7 +131,7 @@ fn settings() -> PpoSettings {
         normalize_advantages: false,
         ..PpoConfig::default()
     };
-    PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } }
+    PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false } }
 }
 
 /// Gradient of w and log σ, KL and clipped rows of one step over the whole batch, and the cotangents of the means.

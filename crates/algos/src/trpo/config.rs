@@ -13,6 +13,7 @@ use crate::gae::AdvantageConfig;
 /// |---|---|---|
 /// | `advantages` | see [`AdvantageConfig`] | how rewards become advantages |
 /// | `max_kl` | 0.01 | δ, the most mean KL divergence of an update |
+/// | `max_kl_final` | 1 | fraction of it left at the end of a linear decay |
 /// | `cg_iterations` | 10 | most steps of conjugate gradients |
 /// | `cg_tolerance` | 1e-10 | they end where the squared norm of what is left is below |
 /// | `damping` | 1e-5 | added to the diagonal of the curvature, in units of the parameters |
@@ -26,6 +27,9 @@ pub struct TrpoConfig {
     pub advantages: AdvantageConfig,
     /// The most mean KL divergence of an update, nats (δ of 14).
     pub max_kl: f64,
+    /// What fraction of it is left at the end. A divergence is measured by the exploration noise: where that is small, most of a
+    /// step of constant divergence is the noise of the gradient, and the policy wanders.
+    pub max_kl_final: f64,
     /// Most steps of conjugate gradients.
     pub cg_iterations: usize,
     /// Conjugate gradients end where the squared norm of the residual is below this.
@@ -45,11 +49,19 @@ pub struct TrpoConfig {
     pub backtracks: usize,
 }
 
+impl TrpoConfig {
+    /// The most mean KL divergence of an update at this share of the training.
+    pub(super) fn max_kl_at(&self, progress: f64) -> f64 {
+        self.max_kl * (1.0 + (self.max_kl_final - 1.0) * progress)
+    }
+}
+
 impl Default for TrpoConfig {
     fn default() -> Self {
         Self {
             advantages: AdvantageConfig::default(),
             max_kl: 0.01,
+            max_kl_final: 1.0,
             cg_iterations: 10,
             cg_tolerance: 1e-10,
             damping: 1e-5,

@@ -15,13 +15,18 @@ pub(super) struct Step {
     pub(super) tried: usize,
 }
 
-/// The first of the steps 1, r, r², … that improves on the loss `start` within the divergence's limit; none where none of
+/// The first of the steps 1, r, r², … that improves on the loss `start` with a divergence of at most `max_kl`; none where none of
 /// them does. `evaluate` gives loss and divergence of a share of the full step; what is no number is no improvement.
-pub(super) fn backtrack(start: f64, config: &TrpoConfig, mut evaluate: impl FnMut(f64) -> (f64, f64)) -> Step {
+pub(super) fn backtrack(
+    start: f64,
+    max_kl: f64,
+    config: &TrpoConfig,
+    mut evaluate: impl FnMut(f64) -> (f64, f64),
+) -> Step {
     let mut fraction = 1.0;
     for tried in 1..=config.backtracks {
         let (loss, kl) = evaluate(fraction);
-        if loss < start && kl <= config.max_kl {
+        if loss < start && kl <= max_kl {
             return Step { fraction, loss, kl, tried };
         }
         fraction *= config.backtrack_ratio;
@@ -35,7 +40,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn search(loss: impl Fn(f64) -> f64, kl: impl Fn(f64) -> f64) -> Step {
-        backtrack(1.0, &TrpoConfig::default(), |f| (loss(f), kl(f)))
+        backtrack(1.0, 0.01, &TrpoConfig::default(), |f| (loss(f), kl(f)))
     }
 
     #[test]
@@ -62,7 +67,7 @@ mod tests {
         #[test]
         fn never_leaves_the_limit(losses in prop::collection::vec(-2.0..3.0_f64, 15), kls in prop::collection::vec(0.0..0.03_f64, 15)) {
             let mut tried = 0;
-            let step = backtrack(1.0, &TrpoConfig::default(), |_| {
+            let step = backtrack(1.0, 0.01, &TrpoConfig::default(), |_| {
                 tried += 1;
                 (losses[tried - 1], kls[tried - 1])
             });

@@ -44,7 +44,7 @@ fn collect(problem: &MassSpring, policy: &Arc<HardwarePolicy>, params: &[f32], i
 }
 
 fn settings(config: TrpoConfig) -> TrpoSettings {
-    TrpoSettings { trpo: config, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } }
+    TrpoSettings { trpo: config, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false } }
 }
 
 fn minibatch(policy: &HardwarePolicy, batch: &Batch) -> Minibatch {
@@ -123,15 +123,19 @@ proptest! {
     /// Wherever it starts and whatever the limit, an update lowers the loss and stays within the divergence, both
     /// judged by the model, or it changes nothing.
     #[test]
-    fn an_update_gains_within_the_bound(seed in 0..1000_u64, exponent in -4.0..0.5_f64, share in 0.05..1.0_f64) {
+    fn an_update_gains_within_the_bound(
+        seed in 0..1000_u64, exponent in -4.0..0.5_f64, left in 0.1..1.0_f64, share in 0.05..1.0_f64,
+    ) {
         let (problem, policy) = policy();
         let params = policy.init(seed, 1.0);
-        let max_kl = 10_f64.powf(exponent);
-        let config = TrpoConfig { max_kl, fisher_rows: FisherRows::Fraction(share), ..TrpoConfig::default() };
+        // Half way through the decay.
+        let (whole, progress) = (10_f64.powf(exponent), 0.5);
+        let max_kl = whole * (1.0 + left) / 2.0;
+        let config = TrpoConfig { max_kl: whole, max_kl_final: left, fisher_rows: FisherRows::Fraction(share), ..TrpoConfig::default() };
         let mut trpo = Trpo::new(&settings(config.clone()), Arc::clone(&policy), params.clone(), seed);
         let batch = collect(&problem, &policy, &params, seed, 6);
         let targets = trpo.baseline.targets(&batch, &config.advantages, 0).unwrap();
-        let metrics = trpo.update(&Serial, &batch, 0.0, 0).unwrap();
+        let metrics = trpo.update(&Serial, &batch, progress, 0).unwrap();
         let region = metrics.trust_region.unwrap();
         let model = Model::new(&policy, &batch);
         let wide = |p: &[f32]| p.iter().map(|&p| f64::from(p)).collect::<Vec<_>>();
@@ -205,7 +209,7 @@ fn the_number_of_threads_changes_no_bit() {
 fn resumes_bit_for_bit() {
     let (problem, policy) = policy();
     for baseline in [
-        BaselineConfig::Linear { ridge: 1e-5, privileged: true },
+        BaselineConfig::Linear { ridge: 1e-5, privileged: true, context: false },
         BaselineConfig::Mlp(MlpBaselineConfig { privileged: true, ..MlpBaselineConfig::default() }),
     ] {
         let trpo = TrpoConfig { fisher_rows: FisherRows::Fraction(0.3), ..TrpoConfig::default() };
@@ -230,7 +234,7 @@ fn resumes_bit_for_bit() {
         let other = TrpoSettings {
             baseline: match settings.baseline {
                 BaselineConfig::Linear { .. } => BaselineConfig::Mlp(MlpBaselineConfig::default()),
-                BaselineConfig::Mlp(_) => BaselineConfig::Linear { ridge: 1.0, privileged: false },
+                BaselineConfig::Mlp(_) => BaselineConfig::Linear { ridge: 1.0, privileged: false, context: false },
             },
             ..settings
         };

@@ -65,7 +65,8 @@ impl Case {
             design_lr_scale: 5.0,
             ..PpoConfig::default()
         };
-        let settings = PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false } };
+        let settings =
+            PpoSettings { ppo, baseline: BaselineConfig::Linear { ridge: 1e-5, privileged: false, context: false } };
         let robot = problem.robot(None);
         Self::new(spec, &robot, Arc::new(problem), None, settings, 20, 1.0)
     }

@@ -24,6 +24,7 @@ pub struct HardwarePolicy {
     groups: Vec<ParamGroup>,
     pub(super) commands: Vec<CommandPort>,
     state_dim: usize,
+    context_dim: usize,
 }
 
 /// Working memory of a [`HardwarePolicy`].
@@ -61,7 +62,8 @@ impl HardwarePolicy {
             at += count;
         }
         let commands = env.command.clone();
-        Ok(Self { spec, controller, composition, groups, commands, state_dim: env.state.len() })
+        let (state_dim, context_dim) = (env.state.len(), env.context.len());
+        Ok(Self { spec, controller, composition, groups, commands, state_dim, context_dim })
     }
 
     /// What it was made of.
@@ -213,6 +215,10 @@ impl Policy for HardwarePolicy {
 
     fn state_dim(&self) -> usize {
         self.state_dim
+    }
+
+    fn context_dim(&self) -> usize {
+        self.context_dim
     }
 
     fn log_std_params(&self) -> Option<Range<usize>> {

@@ -57,6 +57,8 @@ pub trait Policy: Send + Sync {
     fn obs_dim(&self) -> usize;
     /// The number of state columns.
     fn state_dim(&self) -> usize;
+    /// The number of quantities that tell a baseline, and nobody else, what an episode is about.
+    fn context_dim(&self) -> usize;
     /// Where the log standard deviations lie in the parameter vector; `None` where they are not trained.
     fn log_std_params(&self) -> Option<Range<usize>>;
     /// The log standard deviations `[A]` at `progress` in [0, 1] of the training.

@@ -82,6 +82,7 @@ impl Task for Stay {
         EnvSpec {
             observation: vec![port("x"), port("v"), port("xv")],
             state: vec![port("x"), port("v")],
+            context: vec![],
             effort: vec![port("pull"), port("push")],
             command: vec![motor("left", -1.0, 1.0), motor("right", -2.0, 4.0)],
             horizon: HORIZON,

@@ -53,6 +53,7 @@ impl Task for Lift {
         EnvSpec {
             observation: seen.clone(),
             state: seen,
+            context: vec![],
             effort: vec![port("torque", Dimension::Torque)],
             command: vec![CommandPort {
                 name: "motor".to_owned(),

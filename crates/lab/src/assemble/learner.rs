@@ -62,6 +62,7 @@ fn trpo(trpo: &TrpoSpec) -> TrpoConfig {
             bootstrap_truncated: trpo.bootstrap_truncated,
         },
         max_kl: trpo.max_kl,
+        max_kl_final: trpo.max_kl_final,
         cg_iterations: trpo.cg_iterations,
         cg_tolerance: trpo.cg_tolerance,
         damping: trpo.damping,
@@ -75,7 +76,9 @@ fn trpo(trpo: &TrpoSpec) -> TrpoConfig {
 fn baseline(spec: &Spec) -> BaselineConfig {
     let (ppo, baseline) = (&spec.ppo, &spec.baseline);
     match baseline.kind {
-        BaselineKind::Linear => BaselineConfig::Linear { ridge: baseline.ridge, privileged: baseline.privileged },
+        BaselineKind::Linear => {
+            BaselineConfig::Linear { ridge: baseline.ridge, privileged: baseline.privileged, context: baseline.context }
+        }
         BaselineKind::Mlp => BaselineConfig::Mlp(MlpBaselineConfig {
             hidden: baseline.hidden.clone(),
             learning_rate: baseline.learning_rate,
@@ -84,6 +87,7 @@ fn baseline(spec: &Spec) -> BaselineConfig {
             minibatch_rows: baseline.minibatch_rows,
             max_grad_norm: positive(ppo.max_grad_norm),
             privileged: baseline.privileged,
+            context: baseline.context,
         }),
     }
 }

@@ -108,7 +108,7 @@ fn grasp(p: &GraspProblem, spec: &Spec) -> Result<Problems, AssembleError> {
     // What lifts more than it has to is safe where it has to.
     let load = hwasp_mujoco::grasp::Ramp { first: 1.0, last: p.safety_factor, progress: p.safety_growth };
     let mut training = hwasp_mujoco::grasp::GraspSettings { load_ramp: Some(load), ..deployment.clone() };
-    (training.reward.approach, training.reward.success) = (p.approach_reward, p.success_reward);
+    training.reward.approach = p.approach_reward;
     let optimum = vec![None; hwasp_tasks::hand::DESIGN_LEN];
     Ok(Problems { training: world(make(training)?), deployment: world(make(deployment)?), optimum })
 }

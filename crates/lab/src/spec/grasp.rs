@@ -95,7 +95,6 @@ pub struct SpanSpec {
 /// | `distance_penalty` | 2.0 | off the reward of a step, per metre between palm and object | 0 to 1000 |
 /// | `contact_reward` | 0.1 | reward of a step for each distal link that touches the object | 0 to 1000 |
 /// | `approach_reward` | 0.0 | in training only: reward per metre by which the palm comes nearer to being above the object, off it when the palm leaves | 0 to 1e5 |
-/// | `success_reward` | 0.0 | in training only: reward of the last step of an episode that is a success | 0 to 1e5 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GraspProblem {
     /// Limits of the design.
@@ -153,8 +152,6 @@ pub struct GraspProblem {
     pub contact_reward: f64,
     /// Reward of training per metre by which the palm comes nearer to being above the object.
     pub approach_reward: f64,
-    /// Reward of training for the last step of a success.
-    pub success_reward: f64,
 }
 
 impl GraspProblem {
@@ -190,7 +187,6 @@ impl GraspProblem {
         "distance_penalty",
         "contact_reward",
         "approach_reward",
-        "success_reward",
     ];
 
     /// Reads what is set; `spatial` for 3D-Grasp.
@@ -224,7 +220,6 @@ impl GraspProblem {
             distance_penalty: s.number("distance_penalty", 2.0, 0.0..=1000.0),
             contact_reward: s.number("contact_reward", 0.1, 0.0..=1000.0),
             approach_reward: s.number("approach_reward", 0.0, 0.0..=1e5),
-            success_reward: s.number("success_reward", 0.0, 0.0..=1e5),
         }
     }
 }

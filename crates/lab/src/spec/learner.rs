@@ -92,6 +92,7 @@ pub struct PpoSpec {
 /// | `discount` | that of `[ppo]` | gamma | 0 to 1 |
 /// | `gae_lambda` | that of `[ppo]` | lambda | 0 to 1 |
 /// | `max_kl` | 0.01 | the most mean KL divergence of an update, nats | 1e-9 to 10 |
+/// | `max_kl_final` | 1.0 | fraction of it at the end of a linear decay | 1e-6 to 1 |
 /// | `fisher_rows` | 1.0 | rows that the curvature is taken of: a share of the batch, or above 1 how many | 1e-6 to 1e7 |
 /// | `cg_iterations` | 10 | most steps of conjugate gradients | 1 to 1000 |
 /// | `cg_tolerance` | 1e-10 | they end where the squared norm of the residual is below | 0 to 1 |
@@ -109,6 +110,8 @@ pub struct TrpoSpec {
     pub gae_lambda: f64,
     /// The most mean KL divergence of an update, nats.
     pub max_kl: f64,
+    /// Fraction of it at the end of a linear decay.
+    pub max_kl_final: f64,
     /// Rows that the curvature is taken of: up to 1 a share of the batch, above it how many.
     pub fisher_rows: f64,
     /// Most steps of conjugate gradients.
@@ -139,6 +142,7 @@ pub struct TrpoSpec {
 /// | `epochs` | 4 | passes over a batch | 1 to 1000 |
 /// | `minibatch_rows` | that of `[ppo]` | rows of a minibatch of the network; 0: the whole batch | 0 to the rows of an iteration |
 /// | `privileged` | false | whether it also sees the law's state, which the controller does not | |
+/// | `context` | false | whether it also sees what an episode is about and no sensor tells: of a grasp the object's shape, mass, friction and inertia | |
 /// | `ridge` | 1e-5 | regularisation of the linear one | 0 to 1e6 |
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BaselineSpec {
@@ -154,6 +158,8 @@ pub struct BaselineSpec {
     pub minibatch_rows: usize,
     /// Whether it also sees the law's state.
     pub privileged: bool,
+    /// Whether it also sees what an episode is about.
+    pub context: bool,
     /// Regularisation of the linear one.
     pub ridge: f64,
 }
@@ -207,6 +213,7 @@ impl TrpoSpec {
             discount: s.number("discount", ppo.discount, 0.0..=1.0),
             gae_lambda: s.number("gae_lambda", ppo.gae_lambda, 0.0..=1.0),
             max_kl: s.number("max_kl", 0.01, 1e-9..=10.0),
+            max_kl_final: s.number("max_kl_final", 1.0, 1e-6..=1.0),
             fisher_rows: s.number("fisher_rows", 1.0, 1e-6..=MOST_ROWS as f64),
             cg_iterations: s.count("cg_iterations", 10, 1..=1000),
             cg_tolerance: s.number("cg_tolerance", 1e-10, 0.0..=1.0),
@@ -236,6 +243,7 @@ impl BaselineSpec {
             epochs: s.count("epochs", 4, 1..=1000),
             minibatch_rows: s.count("minibatch_rows", ppo.minibatch_rows, 0..=MOST_ROWS),
             privileged: s.flag("privileged", false),
+            context: s.flag("context", false),
             ridge: s.number("ridge", 1e-5, 0.0..=1e6),
         };
         // What it takes over from PPO is judged there.

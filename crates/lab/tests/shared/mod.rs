@@ -142,6 +142,10 @@ impl Environment for Spoiled {
         self.inner.state(out);
     }
 
+    fn context(&self, out: &mut [f64]) {
+        self.inner.context(out);
+    }
+
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         (self.how)(effort, self.inner.step(effort, command))
     }

@@ -97,6 +97,10 @@ impl Environment for Recorder {
         self.robot.state(out);
     }
 
+    fn context(&self, out: &mut [f64]) {
+        self.robot.context(out);
+    }
+
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         let step = self.robot.step(effort, command);
         // Where the physics failed there is nothing to see.

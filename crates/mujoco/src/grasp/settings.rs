@@ -53,8 +53,8 @@ pub enum Inertia {
     Physical,
 }
 
-/// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]). The last two
-/// are ours, and zero unless asked for.
+/// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]). The last is
+/// ours, and zero unless asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GraspReward {
     /// Per metre between palm and object.
@@ -66,8 +66,6 @@ pub struct GraspReward {
     /// Per metre by which palm and object came nearer to each other, seen from above, in the step. Over an episode it adds up
     /// to what start and end differ by (shaping by a potential: Ng, Harada and Russell, ICML 1999).
     pub approach: f64,
-    /// For the last step of a success.
-    pub success: f64,
 }
 
 impl Default for GraspReward {
@@ -77,7 +75,6 @@ impl Default for GraspReward {
             contact: 0.1,
             height: vec![(0.005, 0.5), (0.020, 1.0), (0.050, 2.0), (0.100, 4.0)],
             approach: 0.0,
-            success: 0.0,
         }
     }
 }

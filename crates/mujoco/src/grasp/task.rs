@@ -5,7 +5,7 @@ use rand::RngExt;
 
 use super::object::Object;
 use super::plant::GraspPlant;
-use super::settings::{GraspSettings, Viewpoint};
+use super::settings::{GraspSettings, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::names;
 
 /// The steps at the end of an episode over which a grasp has to hold.
@@ -91,7 +91,10 @@ impl Task for GraspTask {
         let mut command: Vec<CommandPort> = palm.map(|name| motor(name, self.settings.palm_step)).collect();
         command.push(motor("motor", self.settings.hand.transmission.step_limit));
         let (horizon, time_step) = (self.settings.horizon, self.settings.hand.step_time());
-        EnvSpec { observation, state, effort, command, horizon, time_step }
+        let mut context = vec![port("mass", Dimension::Mass), port("friction", Dimension::None)];
+        context.extend(ShapeKind::ALL.iter().map(|kind| port(kind.name(), Dimension::None)));
+        context.extend(["inertia_x", "inertia_y", "inertia_z"].iter().map(|name| port(name, Dimension::None)));
+        EnvSpec { observation, state, context, effort, command, horizon, time_step }
     }
 
     fn set_progress(&mut self, progress: f64) {
@@ -120,6 +123,16 @@ impl Task for GraspTask {
         }
     }
 
+    /// Mass, kg, coefficient of friction, 1 for the object's shape and 0 for the others, moments of inertia, kg·m².
+    fn context(&self, plant: &GraspPlant, out: &mut [f64]) {
+        let object = plant.object();
+        let shapes = ShapeKind::ALL.map(|kind| if kind == object.kind { 1.0 } else { 0.0 });
+        let about = [object.mass, object.friction].into_iter().chain(shapes).chain(object.inertia);
+        for (out, value) in out.iter_mut().zip(about) {
+            *out = value;
+        }
+    }
+
     fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {
         let (palm, object, clearance) = (plant.palm(), plant.object_position(), plant.clearance());
         let touching = plant.touching();
@@ -134,9 +147,8 @@ impl Task for GraspTask {
         let distal = [1, 3, 5].iter().filter(|&&link| touching[link]).count();
         let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
         let before = std::mem::replace(&mut self.beside, beside(palm, object));
-        let held = if self.taken == self.settings.horizon && self.success() { reward.success } else { 0.0 };
         let nearer = reward.approach * (before - self.beside);
-        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer + held
+        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer
     }
 
     fn outcome(&self) -> Option<Outcome> {

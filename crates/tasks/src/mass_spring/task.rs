@@ -59,6 +59,7 @@ impl Task for MassSpringTask {
         EnvSpec {
             observation: ports::of_environment(ports::OBSERVATION),
             state: ports::of_environment(ports::STATE),
+            context: vec![],
             effort: ports::of_environment(effort),
             command: vec![CommandPort {
                 name: name.to_owned(),

@@ -336,6 +336,23 @@ fn training_can_pay_for_approach() {
     assert!(nearer.abs() > 1e-4, "{nearer}");
 }
 
+/// What a baseline may be told is the object that is there, by the names of the ports.
+#[test]
+fn the_context_is_the_object() {
+    let mut robot = Grasp::new(settings(ShapeKind::Cylinder)).unwrap().robot(None);
+    let names: Vec<String> = robot.spec().context.iter().map(|port| port.name.clone()).collect();
+    for seed in 0..3 {
+        robot.reset(&mut rng(seed));
+        let mut about = vec![f64::NAN; names.len()];
+        robot.context(&mut about);
+        let told = |name: &str| about[names.iter().position(|n| n == name).unwrap()];
+        let object = robot.plant().object();
+        assert_eq!([told("mass"), told("friction")], [object.mass, object.friction]);
+        assert_eq!(["inertia_x", "inertia_y", "inertia_z"].map(told), object.inertia);
+        assert_eq!(ShapeKind::ALL.map(|kind| told(kind.name())), ShapeKind::ALL.map(|k| f64::from(k == object.kind)));
+    }
+}
+
 #[test]
 fn the_environment_keeps_its_promises() {
     for palm in [hwasp_tasks::hand::PalmMotion::Vertical, hwasp_tasks::hand::PalmMotion::Spatial] {

@@ -1,6 +1,6 @@
 //! A perceptron as value function.
 
-use hwasp_core::{Batch, Episode, Purpose, stream};
+use hwasp_core::{Batch, Purpose, stream};
 use hwasp_diff::{Activation, Mlp, MlpTape};
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -118,12 +118,12 @@ impl MlpBaseline {
         }
     }
 
-    /// Writes what the network sees at one moment of the episode.
+    /// Writes what the network sees at one moment.
     #[inline]
-    fn fill(&self, obs: &[f32], state: &[f32], episode: &Episode, to: &mut [f32]) {
+    fn fill(&self, obs: &[f32], state: &[f32], context: &[f32], to: &mut [f32]) {
         let (first, beside) = to.split_at_mut(self.seen.obs);
         first.copy_from_slice(obs);
-        let seen = state[..self.seen.state].iter().chain(&episode.context[..self.seen.context]);
+        let seen = state[..self.seen.state].iter().chain(&context[..self.seen.context]);
         for ((to, x), (centre, scale)) in beside.iter_mut().zip(seen).zip(&self.scaling) {
             *to = (x - centre) / scale;
         }
@@ -131,9 +131,10 @@ impl MlpBaseline {
 
     fn fill_row(&self, batch: &Batch, row: usize, to: &mut [f32]) {
         let Shown { obs, state, .. } = self.shown;
-        let episode = batch.episodes.partition_point(|episode| episode.rows.end <= row);
-        let state = &batch.state[row * state..][..state];
-        self.fill(&batch.obs[row * obs..][..obs], state, &batch.episodes[episode], to);
+        let episode = || batch.episodes.partition_point(|episode| episode.rows.end <= row);
+        // Looked for only where it is seen: there are many rows.
+        let context = if self.seen.context > 0 { &batch.episodes[episode()].context[..] } else { &[] };
+        self.fill(&batch.obs[row * obs..][..obs], &batch.state[row * state..][..state], context, to);
     }
 
     fn scale(&self) -> (f64, f64) {
@@ -151,7 +152,7 @@ impl MlpBaseline {
         }
         let mut last = vec![0.0; batch.episodes.len() * width];
         for (episode, to) in batch.episodes.iter().zip(last.chunks_exact_mut(width)) {
-            self.fill(&episode.last_obs, &episode.last_state, episode, to);
+            self.fill(&episode.last_obs, &episode.last_state, &episode.context, to);
         }
         let mut run = |seen: &[f32]| {
             let mut values = Vec::with_capacity(seen.len() / width);
@@ -251,7 +252,7 @@ impl Persist for MlpBaseline {
 mod tests {
     use super::*;
     use crate::archive::Array;
-    use hwasp_core::End;
+    use hwasp_core::{End, Episode};
 
     const SHOWN: Shown = Shown { obs: 1, state: 0, context: 0 };
 

@@ -15,8 +15,8 @@ pub(super) struct Step {
     pub(super) tried: usize,
 }
 
-/// The first of the steps 1, r, r², … that improves on the loss `start` with a divergence of at most `max_kl`; none where none of
-/// them does. `evaluate` gives loss and divergence of a share of the full step; what is no number is no improvement.
+/// The first of the steps 1, r, r², … that improves on the loss `start` with a divergence of at most `max_kl`; none where
+/// none of them does. `evaluate` gives loss and divergence of a share of the full step; what is no number is no improvement.
 pub(super) fn backtrack(
     start: f64,
     max_kl: f64,

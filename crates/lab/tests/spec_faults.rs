@@ -131,6 +131,12 @@ fn options() {
 }
 
 #[test]
+fn hints_name_the_keys_of_this_problem_alone() {
+    let told = option_faults("pendulum", &["task.temperature=3"]);
+    assert!(told.ends_with("the keys here are `problem`, `horizon`"), "{told}");
+}
+
+#[test]
 fn names_and_paths() {
     let folder = std::env::temp_dir().join(format!("hwasp-spec-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

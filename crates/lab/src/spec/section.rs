@@ -171,10 +171,10 @@ impl<'r> Section<'r> {
         self.reader.fault(self.origin(key), &self.path(key), message, Some(hint.to_owned()));
     }
 
-    /// Refuses a key that exists, but says nothing in this experiment.
+    /// Refuses a key that exists, but says nothing in this experiment. Hints leave it out.
     pub(super) fn refuse(&mut self, key: &'static str, why: &str) {
-        self.known.push(key);
         let Some(entry) = self.table.and_then(|table| table.get(key)) else { return };
+        self.known.push(key);
         let path = self.path(key);
         let message = format!("{path} does not belong here: {why}");
         self.reader.fault(Some(&entry.key), &path, message, Some("leave it out".into()));

@@ -3,10 +3,12 @@
 //! learner solves in about a second.
 //!
 //! Every module gives a checked problem that hands out its [`Law`](hwasp_core::Law) and makes its environments. Physics
-//! (plant), purpose (task) and mechanism (law) are separate types; none of them knows how it is trained.
+//! (plant), purpose (task) and mechanism (law) are separate types; none of them knows how it is trained. A module's `problem`
+//! is its door to experiment files: it implements [`Problem`](hwasp_problem::Problem).
 
 #![forbid(unsafe_code)]
 
+pub mod grasp;
 pub mod hand;
 pub mod mass_spring;
 pub mod pendulum;

@@ -48,6 +48,8 @@
 //! # End
 //! Truncated after 200 steps of 0.05 s. Never terminated.
 
+mod problem;
+
 use std::f64::consts::PI;
 
 use hwasp_core::{
@@ -57,6 +59,8 @@ use hwasp_core::{
 use hwasp_diff::Scalar;
 use rand::RngExt;
 use thiserror::Error;
+
+pub use problem::PendulumProblem;
 
 /// Gravity, m/s².
 pub const GRAVITY: f64 = 10.0;

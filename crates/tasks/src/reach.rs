@@ -40,6 +40,8 @@
 //! # End
 //! Truncated after 30 steps of 0.1 s. Never terminated.
 
+mod problem;
+
 use hwasp_core::{
     CommandPort, DesignError, DesignGroup, DesignSpace, Dimension, EnvSpec, Environment, Hardware, Initial, Law,
     MakeEnvironment, Plant, Port, Ports, Robot, Stream, Task,
@@ -47,6 +49,8 @@ use hwasp_core::{
 use hwasp_diff::Scalar;
 use rand::RngExt;
 use thiserror::Error;
+
+pub use problem::{ReachProblem, ReachTaskSettings};
 
 /// Where the point goes, and how costly that is.
 ///

@@ -32,6 +32,7 @@
 mod film;
 mod object;
 mod plant;
+mod problem;
 mod script;
 mod settings;
 mod task;
@@ -44,6 +45,7 @@ use thiserror::Error;
 pub use film::{Film, Filmed, Stage, Still};
 pub use object::Object;
 pub use plant::GraspPlant;
+pub use problem::{engine, settings_of};
 pub use script::Script;
 pub use settings::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
 pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};

@@ -3,55 +3,8 @@
 use hwasp_core::Initial;
 
 use super::GraspError;
+pub use hwasp_tasks::grasp::{Inertia, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PalmMotion};
-
-/// Shapes of objects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ShapeKind {
-    /// A ball.
-    Sphere,
-    /// A cuboid.
-    Box,
-    /// An upright cylinder.
-    Cylinder,
-    /// An ellipsoid.
-    Ellipsoid,
-}
-
-impl ShapeKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Sphere, Self::Box, Self::Cylinder, Self::Ellipsoid];
-
-    /// Its name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sphere => "sphere",
-            Self::Box => "box",
-            Self::Cylinder => "cylinder",
-            Self::Ellipsoid => "ellipsoid",
-        }
-    }
-}
-
-/// From where the controller sees the object.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Viewpoint {
-    /// Its place in the world, as the paper has it.
-    #[default]
-    World,
-    /// Its place relative to the palm: the difference of what both sensors say.
-    Palm,
-}
-
-/// Where an object's inertia comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Inertia {
-    /// Each principal moment drawn from this range alone, kg·m², as the paper has it; triples that no rigid body has are
-    /// drawn again.
-    Independent([f64; 2]),
-    /// That of a homogeneous body of its mass, shape and size.
-    Physical,
-}
 
 /// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]). The last is
 /// ours, and zero unless asked for.
@@ -175,7 +128,7 @@ impl Default for GraspSettings {
             hand: HandDescription::default(),
             range: HandRange::Large,
             initial: [Initial::Logit { half_width: 5.0 }; DESIGN_LEN],
-            shapes: ShapeKind::ALL.to_vec(),
+            shapes: ShapeKind::EACH.to_vec(),
             size: [0.040, 0.100],
             mass: [0.100, 0.500],
             friction: [0.5, 1.0],

@@ -1,12 +1,13 @@
 //! What grasping is about: the observation, the reward and success.
 
-use hwasp_core::{CommandPort, Dimension, EnvSpec, Outcome, Port, Stream, Task};
+use hwasp_core::{EnvSpec, Outcome, Stream, Task};
 use rand::RngExt;
 
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
-use hwasp_tasks::hand::names;
+use hwasp_settings::Choice;
+use hwasp_tasks::grasp::env_spec;
 
 /// The steps at the end of an episode over which a grasp has to hold.
 pub const HOLD_STEPS: usize = 100;
@@ -71,30 +72,8 @@ impl Task for GraspTask {
     type Plant = GraspPlant;
 
     fn spec(&self) -> EnvSpec {
-        let port = |name: &str, dimension| Port { name: name.to_owned(), dimension };
-        let lengths = ["palm_x", "palm_y", "palm_z", "object_x", "object_y", "object_z", "size_x", "size_y", "size_z"];
-        let mut observation: Vec<Port> = lengths.iter().map(|name| port(name, Dimension::Length)).collect();
-        observation.push(port("motor_travel", Dimension::Length));
-        observation.push(port("motor_torque", Dimension::Torque));
-        let mut state = vec![port("motor_travel", Dimension::Length)];
-        state.extend(names::JOINTS.iter().map(|joint| port(&format!("{joint}_angle"), Dimension::Angle)));
-        let mut effort: Vec<Port> =
-            names::JOINTS.iter().map(|joint| port(&format!("{joint}_torque"), Dimension::Torque)).collect();
-        effort.push(port("motor_torque", Dimension::Torque));
-        let motor = |name: &str, most: f64| CommandPort {
-            name: name.to_owned(),
-            dimension: Dimension::Length,
-            lo: -most,
-            hi: most,
-        };
-        let palm = self.settings.palm.commands().iter();
-        let mut command: Vec<CommandPort> = palm.map(|name| motor(name, self.settings.palm_step)).collect();
-        command.push(motor("motor", self.settings.hand.transmission.step_limit));
-        let (horizon, time_step) = (self.settings.horizon, self.settings.hand.step_time());
-        let mut context = vec![port("mass", Dimension::Mass), port("friction", Dimension::None)];
-        context.extend(ShapeKind::ALL.iter().map(|kind| port(kind.name(), Dimension::None)));
-        context.extend(["inertia_x", "inertia_y", "inertia_z"].iter().map(|name| port(name, Dimension::None)));
-        EnvSpec { observation, state, context, effort, command, horizon, time_step }
+        let GraspSettings { hand, palm, palm_step, horizon, .. } = &self.settings;
+        env_spec(hand, *palm, *palm_step, *horizon)
     }
 
     fn set_progress(&mut self, progress: f64) {
@@ -126,7 +105,7 @@ impl Task for GraspTask {
     /// Mass, kg, coefficient of friction, 1 for the object's shape and 0 for the others, moments of inertia, kg·m².
     fn context(&self, plant: &GraspPlant, out: &mut [f64]) {
         let object = plant.object();
-        let shapes = ShapeKind::ALL.map(|kind| if kind == object.kind { 1.0 } else { 0.0 });
+        let shapes = ShapeKind::EACH.map(|kind| if kind == object.kind { 1.0 } else { 0.0 });
         let about = [object.mass, object.friction].into_iter().chain(shapes).chain(object.inertia);
         for (out, value) in out.iter_mut().zip(about) {
             *out = value;

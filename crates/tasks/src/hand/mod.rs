@@ -37,6 +37,7 @@ mod closing;
 mod description;
 mod error;
 mod law;
+mod mechanism;
 mod mjcf;
 pub mod names;
 mod parts;

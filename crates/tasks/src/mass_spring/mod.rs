@@ -67,6 +67,7 @@
 mod bar;
 mod plant;
 mod ports;
+mod problem;
 mod reward;
 mod settings;
 mod springs;
@@ -76,6 +77,7 @@ use hwasp_core::{Environment, Law, MakeEnvironment, Robot};
 
 pub use bar::{RigidBar, SoftBar};
 pub use plant::{Coupling, MassSpringPlant};
+pub use problem::{BarLength, BarLengthTask, InterfaceKind, MassSpringBase, RewardKind, Stiffness, StiffnessTask};
 pub use reward::{Reward, Switch};
 pub use settings::{MassSpringError, MassSpringSettings};
 pub use springs::Springs;

@@ -1,0 +1,38 @@
+//! Experiment files: TOML becomes an [`Experiment`] in which nothing is left open, or a list of everything that is wrong.
+//!
+//! What an experiment may name, problems and learners, is in a [`Catalogue`]: a value that the caller hands over. An
+//! experiment has layers, and the later ones win: the file; its `[methods.<method>]` tables, which hold the same tables as
+//! the file does; what the command line sets.
+
+#![forbid(unsafe_code)]
+
+mod catalogue;
+mod controller;
+mod design;
+mod experiment;
+mod initial;
+mod learner;
+mod load;
+mod method;
+mod noise;
+mod placements;
+mod reference;
+mod search;
+mod task;
+mod train;
+
+pub use catalogue::{Catalogue, CatalogueError};
+pub use controller::{ActivationKind, ControllerSettings};
+pub use design::{DesignSettings, Group, Place};
+pub use experiment::{Experiment, resolve};
+pub use hwasp_settings::{Choice, Excerpt, Fault, Faults, LONGEST_FILE, Layers};
+pub use initial::{InitialDesign, InitialValue};
+pub use learner::LearnerSettings;
+pub use load::load;
+pub use method::Method;
+pub use noise::NoiseSettings;
+pub use placements::PlacedRange;
+pub use reference::{reference, schema};
+pub use search::{Score, SearchSettings};
+pub use task::{MOST_STEPS, Task};
+pub use train::TrainSettings;

@@ -1,0 +1,57 @@
+//! A problem for given settings.
+
+use std::sync::Arc;
+
+use hwasp_core::{Law, MakeEnvironment};
+
+use crate::mechanism::Mechanism;
+use crate::words::Words;
+use crate::world::World;
+use crate::AnyError;
+
+/// From a design (SI) to the world that comes nearest to the built robot, in which the law may have no say.
+pub type StandIn = Arc<dyn Fn(&[f64]) -> Result<World, AnyError> + Send + Sync>;
+
+/// A problem: where one trains, where the result has to work, and what is known of it.
+#[derive(Clone)]
+pub struct Built {
+    /// Where one trains: the law that is differentiated, and aids to training.
+    pub training: World,
+    /// Where the result has to work: the mechanism as built, without aids. Evaluations happen here.
+    pub deployment: World,
+    /// The total of each design group that is best as built, where it is known, SI.
+    pub optimum: Vec<Option<f64>>,
+    /// The standard deviation with which efforts are explored unless an experiment says otherwise, SI.
+    pub effort_std: Option<f64>,
+    /// What problem and ports are called in exports and reports.
+    pub words: Words,
+    /// What is built of the law: parts, shapes, statics.
+    pub mechanism: Option<Arc<dyn Mechanism>>,
+    /// The world that stands in for the built robot.
+    pub stand_in: Option<StandIn>,
+}
+
+impl Built {
+    /// A mechanism that works as it is trained: one world, of which nothing else is known.
+    pub fn new(law: Law, make: impl MakeEnvironment + 'static) -> Self {
+        let world = World::new(law, make);
+        Self::of(world.clone(), world)
+    }
+
+    /// The same with a world to train in and another in which the result has to work.
+    pub fn of(training: World, deployment: World) -> Self {
+        let optimum = vec![None; training.law.design().groups().len()];
+        let words = Words::default();
+        Self { training, deployment, optimum, effort_std: None, words, mechanism: None, stand_in: None }
+    }
+}
+
+impl std::fmt::Debug for Built {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Built")
+            .field("training", &self.training)
+            .field("deployment", &self.deployment)
+            .field("mechanism", &self.mechanism)
+            .finish_non_exhaustive()
+    }
+}

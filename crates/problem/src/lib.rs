@@ -1,0 +1,62 @@
+//! What a problem is.
+//!
+//! A [`Problem`] has a name, settings that experiment files may have in `[task]`, and a function from their values to what is
+//! trained and judged: [`Built`]. Those that come with the program and those that somebody brings along implement the same
+//! trait and enter by the same door, a catalogue of experiments.
+//!
+//! ```
+//! use hwasp_core::Dimension;
+//! use hwasp_problem::{AnyError, Built, Problem};
+//! use hwasp_settings::{Fields, Settings};
+//! # use hwasp_core::{DesignSpace, Hardware, Law, MakeEnvironment, Ports};
+//! # fn law() -> Result<Law, AnyError> { Err("".into()) }
+//! # fn environments(_: f64) -> Box<dyn MakeEnvironment> { Box::new(|_| unreachable!()) }
+//!
+//! /// A lamp on an arm that a spring should carry.
+//! struct Lamp;
+//!
+//! #[derive(Clone, Debug, PartialEq)]
+//! struct LampSettings {
+//!     /// Where the arm has to be held, rad.
+//!     goal: f64,
+//! }
+//!
+//! impl Settings for LampSettings {
+//!     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+//!         fields.quantity("goal", &mut self.goal, Dimension::Angle, -1.2..=1.2, "where the arm has to be held");
+//!     }
+//! }
+//!
+//! impl Problem for Lamp {
+//!     type Settings = LampSettings;
+//!
+//!     fn name(&self) -> &str {
+//!         "lamp"
+//!     }
+//!
+//!     fn defaults(&self) -> LampSettings {
+//!         LampSettings { goal: 0.6 }
+//!     }
+//!
+//!     fn build(&self, settings: &LampSettings) -> Result<Built, AnyError> {
+//!         Ok(Built::new(law()?, environments(settings.goal)))
+//!     }
+//! }
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod built;
+mod mechanism;
+mod problem;
+mod words;
+mod world;
+
+pub use built::{Built, StandIn};
+pub use mechanism::Mechanism;
+pub use problem::{AnyProblem, Preset, Problem};
+pub use words::{Role, Words};
+pub use world::World;
+
+/// Whatever a problem finds wrong.
+pub type AnyError = Box<dyn std::error::Error + Send + Sync>;

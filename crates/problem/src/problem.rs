@@ -1,0 +1,72 @@
+//! The trait that every problem implements, and the same with its settings' type erased.
+
+use hwasp_settings::{AnySettings, Settings};
+
+use crate::{AnyError, Built};
+
+/// An experiment that comes with a problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// What it is called: `mass-spring`, `paper/mass-spring`.
+    pub name: &'static str,
+    /// The experiment file.
+    pub text: &'static str,
+}
+
+/// A problem: a mechanism, the world that it works in, and what it is for.
+pub trait Problem: Send + Sync + 'static {
+    /// What experiments may set in `[task]` beside `problem` and `horizon`.
+    type Settings: Settings + Clone + std::fmt::Debug + PartialEq + Send + Sync + 'static;
+
+    /// What experiments call it in `task.problem`: lower-case letters, digits and hyphens.
+    fn name(&self) -> &str;
+
+    /// The settings where an experiment says nothing.
+    fn defaults(&self) -> Self::Settings;
+
+    /// The problem with these settings, which are within their limits. The same settings give the same. Checking an experiment
+    /// builds its problem, so that physics that take time to set up belong into [`World::later`](crate::World::later).
+    ///
+    /// # Errors
+    /// Where the settings do not go together; the text is shown with the line of `task.problem`.
+    fn build(&self, settings: &Self::Settings) -> Result<Built, AnyError>;
+
+    /// Experiments that come with it, the first of them its default.
+    fn presets(&self) -> Vec<Preset> {
+        Vec::new()
+    }
+}
+
+/// A [`Problem`] as a catalogue keeps it.
+pub trait AnyProblem: Send + Sync {
+    /// See [`Problem::name`].
+    fn name(&self) -> &str;
+    /// See [`Problem::defaults`].
+    fn defaults(&self) -> Box<dyn AnySettings>;
+    /// See [`Problem::build`].
+    ///
+    /// # Panics
+    /// If the settings are those of another problem.
+    fn build(&self, settings: &dyn AnySettings) -> Result<Built, AnyError>;
+    /// See [`Problem::presets`].
+    fn presets(&self) -> Vec<Preset>;
+}
+
+impl<P: Problem> AnyProblem for P {
+    fn name(&self) -> &str {
+        Problem::name(self)
+    }
+
+    fn defaults(&self) -> Box<dyn AnySettings> {
+        Box::new(Problem::defaults(self))
+    }
+
+    fn build(&self, settings: &dyn AnySettings) -> Result<Built, AnyError> {
+        let own = settings.as_any().downcast_ref::<P::Settings>();
+        Problem::build(self, own.expect("settings are handed back to the problem that they came from"))
+    }
+
+    fn presets(&self) -> Vec<Preset> {
+        Problem::presets(self)
+    }
+}

@@ -1,0 +1,55 @@
+//! Closed sets of names, written once for reading, writing and messages.
+
+/// One of some names; made by [`choice!`](crate::choice!).
+pub trait Choice: Copy + PartialEq + 'static {
+    /// Every one, with its name in files.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// Its name in files.
+    fn name(self) -> &'static str;
+
+    /// The one of this name.
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(other, _)| *other == name).map(|&(_, value)| value)
+    }
+}
+
+/// An enum whose variants have names in files.
+///
+/// ```
+/// hwasp_settings::choice! {
+///     /// From where one looks.
+///     pub enum Viewpoint {
+///         /// From the world.
+///         World = "world",
+///         /// From the palm.
+///         Palm = "palm",
+///     }
+/// }
+/// use hwasp_settings::Choice;
+/// assert_eq!(Viewpoint::from_name("palm").map(Viewpoint::name), Some("palm"));
+/// ```
+#[macro_export]
+macro_rules! choice {
+    ($(#[$meta:meta])* $vis:vis enum $enum:ident { $($(#[$doc:meta])* $variant:ident = $name:literal),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        $vis enum $enum {
+            $($(#[$doc])* $variant),+
+        }
+
+        impl $crate::Choice for $enum {
+            const ALL: &'static [(&'static str, Self)] = &[$(($name, Self::$variant)),+];
+
+            fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),+ }
+            }
+        }
+
+        impl ::std::fmt::Display for $enum {
+            fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
+                f.write_str($crate::Choice::name(*self))
+            }
+        }
+    };
+}

@@ -1,0 +1,145 @@
+//! The door of the grasping problems to experiment files.
+
+use std::sync::Arc;
+
+use hwasp_core::{Law, MakeEnvironment};
+use hwasp_problem::{AnyError, Built, Preset, Problem, Role, Words, World};
+
+use super::env::env_spec;
+use super::{GraspTaskSettings, Viewpoint};
+use crate::hand::{DESIGN_LEN, PalmMotion, TendonHand, TendonHandSettings, names};
+
+/// Steps of an episode, 10 ms each (paper, appendix B).
+const HORIZON: usize = 500;
+/// Motion of the palm in a step, ± m.
+const PALM_STEP: f64 = 0.002;
+
+/// Which environments of a grasping problem are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scene {
+    /// With the aids to training that the settings ask for.
+    Training,
+    /// Without.
+    Deployment,
+    /// On the hand with the engine's own tendons, springs and pulleys of this design (SI).
+    Native([f64; DESIGN_LEN]),
+}
+
+/// Makes environments in an engine.
+pub type Engine = fn(&GraspTaskSettings, PalmMotion, Scene) -> Result<Arc<dyn MakeEnvironment>, AnyError>;
+
+/// `z-grasp` or `3d-grasp`: the hand's transmission is the design. Without an engine it can be read, drawn and exported, and
+/// says of its worlds that they need one.
+#[derive(Clone, Copy, Debug)]
+pub struct GraspProblem {
+    palm: PalmMotion,
+    engine: Option<Engine>,
+}
+
+impl GraspProblem {
+    /// `z-grasp`: the palm moves up and down.
+    pub fn vertical(engine: Option<Engine>) -> Self {
+        Self { palm: PalmMotion::Vertical, engine }
+    }
+
+    /// `3d-grasp`: the palm moves in space.
+    pub fn spatial(engine: Option<Engine>) -> Self {
+        Self { palm: PalmMotion::Spatial, engine }
+    }
+}
+
+/// The physics of a scene, once they are asked for.
+fn world(problem: GraspProblem, law: &Law, task: &GraspTaskSettings, scene: Scene) -> World {
+    let name = Problem::name(&problem).to_owned();
+    let (task, env) = (task.clone(), env_spec(&task.hand(), problem.palm, PALM_STEP, HORIZON));
+    World::later(law.clone(), env, move || match problem.engine {
+        Some(engine) => engine(&task, problem.palm, scene),
+        None => Err(format!(
+            "{name} needs the MuJoCo engine, and this program was built without it: build it with the feature \"mujoco\""
+        )
+        .into()),
+    })
+}
+
+impl Problem for GraspProblem {
+    type Settings = GraspTaskSettings;
+
+    fn name(&self) -> &'static str {
+        match self.palm {
+            PalmMotion::Vertical => "z-grasp",
+            PalmMotion::Spatial => "3d-grasp",
+        }
+    }
+
+    fn defaults(&self) -> GraspTaskSettings {
+        GraspTaskSettings::within(if self.palm == PalmMotion::Spatial { 0.05 } else { 0.0 })
+    }
+
+    fn build(&self, task: &GraspTaskSettings) -> Result<Built, AnyError> {
+        let problem = *self;
+        let settings =
+            TendonHandSettings { palm: self.palm, range: task.range.into(), ..TendonHandSettings::default() };
+        let law = Law::new(TendonHand::new(&task.hand().transmission, &settings)?);
+        let scene = |scene| world(problem, &law, task, scene);
+        let (training, deployment) = (scene(Scene::Training), scene(Scene::Deployment));
+        let (own, native_law) = (task.clone(), law.clone());
+        let stand_in = move |design: &[f64]| {
+            let wanted = design.len();
+            let design = design.try_into().map_err(|_| format!("a hand has {DESIGN_LEN} parameters, not {wanted}"))?;
+            Ok(world(problem, &native_law, &own, Scene::Native(design)))
+        };
+        Ok(Built {
+            effort_std: Some(0.02),
+            words: words(self.palm, task.viewpoint),
+            mechanism: Some(Arc::new(task.hand())),
+            stand_in: Some(Arc::new(stand_in)),
+            ..Built::of(training, deployment)
+        })
+    }
+
+    fn presets(&self) -> Vec<Preset> {
+        vec![match self.palm {
+            PalmMotion::Vertical => {
+                Preset { name: "z-grasp", text: include_str!("../../../../experiments/z-grasp.toml") }
+            }
+            PalmMotion::Spatial => {
+                Preset { name: "3d-grasp", text: include_str!("../../../../experiments/3d-grasp.toml") }
+            }
+        }]
+    }
+}
+
+fn words(palm: PalmMotion, viewpoint: Viewpoint) -> Words {
+    let motion = match palm {
+        PalmMotion::Vertical => "up and down",
+        PalmMotion::Spatial => "in space",
+    };
+    let place = match viewpoint {
+        Viewpoint::World => "the object's centre in the world",
+        Viewpoint::Palm => "the object's centre from the palm",
+    };
+    let axes = |name: &str, meaning: &'static str| ["x", "y", "z"].map(|axis| (format!("{name}_{axis}"), meaning));
+    let mut seen = Vec::new();
+    seen.extend(axes("palm", "the palm in the world, z upwards from the floor"));
+    seen.extend(axes("object", place));
+    seen.extend(axes("size", "the object's bounding box as it lies at the start"));
+    seen.push(("motor_travel".to_owned(), "tendon wound so far"));
+    seen.push(("motor_torque".to_owned(), "torque of the motor in the last period"));
+    let of_joints = |what: &str, meaning: &'static str| names::JOINTS.map(|joint| (format!("{joint}_{what}"), meaning));
+    let mut read = vec![("motor_travel".to_owned(), "tendon wound so far")];
+    read.extend(of_joints("angle", "angle of the joint, 0 open, closing"));
+    let mut given = axes("palm", "motion of the palm's target in this period").to_vec();
+    given.push(("motor".to_owned(), "tendon to wind in this period"));
+    let mut done = of_joints("torque", "torque about the joint, closing").to_vec();
+    done.push(("motor_torque".to_owned(), "torque of the motor"));
+    let about = format!(
+        "One motor winds three tendons, which close a thumb and two fingers of two links each against springs in the joints; the \
+         palm moves {motion}. The hand has to come down to an object, grasp it and lift it. Pulley radius, spring stiffness and \
+         spring preload at four kinds of joints are the design; the two fingers share theirs."
+    );
+    let roles = [(Role::Observation, seen), (Role::State, read), (Role::Command, given), (Role::Effort, done)];
+    roles.into_iter().fold(Words::about(about), |words, (role, ports)| {
+        let ports: Vec<(&str, &str)> = ports.iter().map(|(name, meaning)| (name.as_str(), *meaning)).collect();
+        words.with(role, &ports)
+    })
+}

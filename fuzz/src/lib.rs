@@ -1,4 +1,4 @@
-//! What is done with bytes of strangers. The fuzz targets call it, and `crates/lab/tests/fuzz_corpus.rs`, which includes
+//! What is done with bytes of strangers. The fuzz targets call it, and `crates/training/tests/fuzz_corpus.rs`, which includes
 //! this file, replays all inputs that were kept.
 
 use std::sync::LazyLock;
@@ -6,10 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::{Archive, Array};
 use hwasp_core::Serial;
-use hwasp_lab::checkpoint::{Checkpoint, Header};
-use hwasp_lab::metrics::{MetricsRow, MetricsTable, MetricsWriter};
-use hwasp_lab::spec::{self, Layers};
-use hwasp_lab::{Assembly, Event, Observer, ObserverError, read_policy, train_from, write_policy};
+use hwasp_training::checkpoint::{Checkpoint, Header};
+use hwasp_training::metrics::{MetricsRow, MetricsTable, MetricsWriter};
+use hwasp_training::spec::{self, Layers};
+use hwasp_training::{Assembly, Event, Observer, ObserverError, read_policy, train_from, write_policy};
 
 /// The hash that stands for an experiment.
 const EXPERIMENT: &str = "experiment";

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use hwasp_lab::export::{self, Kind};
-use hwasp_lab::play;
-use hwasp_lab::plot::XAxis;
-use hwasp_lab::spec::{Method, TrainSpec};
+use hwasp_training::export::{self, Kind};
+use hwasp_training::play;
+use hwasp_training::plot::XAxis;
+use hwasp_training::spec::{Method, TrainSpec};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use hwasp_lab::checkpoint::CheckpointError;
-use hwasp_lab::compare::CompareError;
-use hwasp_lab::plot::PlotError;
-use hwasp_lab::{PolicyFileError, ReplayError, RunError};
+use hwasp_training::checkpoint::CheckpointError;
+use hwasp_training::compare::CompareError;
+use hwasp_training::plot::PlotError;
+use hwasp_training::{PolicyFileError, ReplayError, RunError};
 
 /// The file of a run folder that makes it one.
 const EXPERIMENT: &str = "experiment.toml";

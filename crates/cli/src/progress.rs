@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use hwasp_lab::metrics::MetricsRow;
-use hwasp_lab::text::{grouped, quantity};
-use hwasp_lab::{Assembly, Event, Observer, ObserverError};
+use hwasp_training::metrics::MetricsRow;
+use hwasp_training::text::{grouped, quantity};
+use hwasp_training::{Assembly, Event, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::log::{PROGRESS, has_terminal};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_lab::compare::{self, CellResult, CompareError, Comparison, Contender, Grid};
+use hwasp_training::compare::{self, CellResult, CompareError, Comparison, Contender, Grid};
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;

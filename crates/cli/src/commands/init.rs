@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hwasp_lab::project::{self, Origin, Project, ProjectError, Template};
+use hwasp_training::project::{self, Origin, Project, ProjectError, Template};
 
 use crate::args::{InitArgs, TemplateArg};
 use crate::failure::Failure;

@@ -1,6 +1,6 @@
 //! `hwasp play`.
 
-use hwasp_lab::{SavedRun, play};
+use hwasp_training::{SavedRun, play};
 
 use super::saved_run;
 use crate::args::PlayArgs;

@@ -1,6 +1,6 @@
 //! `hwasp plot`.
 
-use hwasp_lab::plot::{PlotError, PlotOptions, curves, write_plot};
+use hwasp_training::plot::{PlotError, PlotOptions, curves, write_plot};
 
 use super::saved_run;
 use crate::args::PlotArgs;

@@ -1,7 +1,7 @@
 //! `hwasp tolerances`.
 
-use hwasp_lab::EvaluateError;
-use hwasp_lab::tolerances::{PICTURES, TOLERANCES, tolerances};
+use hwasp_training::EvaluateError;
+use hwasp_training::tolerances::{PICTURES, TOLERANCES, tolerances};
 
 use super::{executor, saved_run};
 use crate::args::TolerancesArgs;

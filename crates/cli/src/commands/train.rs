@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
-use hwasp_lab::checkpoint::Checkpoint;
-use hwasp_lab::{
+use hwasp_training::checkpoint::Checkpoint;
+use hwasp_training::{
     Assembly, Keeping, Observer, ObserverError, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard,
     TrainError, Trained, train_from,
 };

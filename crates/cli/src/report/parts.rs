@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use hwasp_lab::parts::{JointDesign, JointParts, PartsList};
-use hwasp_lab::tolerances::{Sensitivities, Side};
-use hwasp_lab::{Change, Evaluation, MeanInterval};
+use hwasp_training::parts::{JointDesign, JointParts, PartsList};
+use hwasp_training::tolerances::{Sensitivities, Side};
+use hwasp_training::{Change, Evaluation, MeanInterval};
 
 use super::quantity;
 

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use hwasp_training::compare::Watch;
+use hwasp_study::Watch;
 use hwasp_training::{Event, TrainError};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 

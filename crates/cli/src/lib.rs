@@ -24,6 +24,7 @@ mod grid_progress;
 mod log;
 mod output;
 mod progress;
+mod project;
 mod report;
 
 use std::process::ExitCode;

@@ -7,11 +7,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_core::Policy;
-use hwasp_training::checkpoint::Checkpoint;
-use hwasp_training::export::{ExportFile, Kind};
+use hwasp_export::{ExportFile, Kind};
+use hwasp_runs::text::{grouped, quantity};
+use hwasp_runs::{Replay, Summary};
 use hwasp_training::spec::Spec;
-use hwasp_training::text::{grouped, quantity};
-use hwasp_training::{Assembly, Evaluation, MeanInterval, Replay, Summary};
+use hwasp_training::{Assembly, Checkpoint, Evaluation, MeanInterval};
 
 /// The line before a training.
 pub(crate) fn beginning(spec: &Spec, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {

@@ -1,5 +1,6 @@
 //! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
 
+mod budget;
 mod learner;
 mod problem;
 
@@ -7,8 +8,8 @@ use std::sync::Arc;
 
 use hwasp_algos::{Learner, Ppo, Trpo};
 use hwasp_core::{
-    Anneal, DesignError, HardwarePolicy, Initial, Law, MakeEnvironment, Noise, Placement, PlacementError, Policy,
-    PolicySpec, Purpose, Spread, stream,
+    Anneal, DesignError, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose,
+    Spread, stream,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::hand::HandError;
@@ -17,10 +18,12 @@ use hwasp_tasks::pendulum::PendulumError;
 use hwasp_tasks::reach::ReachError;
 use thiserror::Error;
 
+pub(crate) use self::budget::{FINAL_EPISODES, popsize};
 pub use self::learner::LearnerSettings;
-pub(crate) use self::problem::law;
+pub use self::problem::law;
 use self::problem::problem;
 use crate::spec::{ActivationKind, Method, Place, Spec};
+use crate::worlds::{Problems, World};
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;
@@ -102,35 +105,6 @@ pub enum AssembleError {
     },
 }
 
-/// A mechanism in a world.
-#[derive(Clone)]
-pub struct World {
-    /// The mechanism's law.
-    pub law: Law,
-    /// Makes environments for it.
-    pub make: Arc<dyn MakeEnvironment>,
-}
-
-/// A problem: where one trains, where the result has to work, and what is known of its best design.
-#[derive(Clone)]
-pub struct Problems {
-    /// Where one trains.
-    pub training: World,
-    /// Where the result has to work: the mechanism as built, without aids to training.
-    pub deployment: World,
-    /// The total of each design group that is best as built, where it is known, SI.
-    pub optimum: Vec<Option<f64>>,
-}
-
-impl Problems {
-    /// A mechanism that works as it is trained: one world, whose best design is not known.
-    pub fn new(law: Law, make: impl MakeEnvironment + 'static) -> Self {
-        let optimum = vec![None; law.design().groups().len()];
-        let world = World { law, make: Arc::new(make) };
-        Self { training: world.clone(), deployment: world, optimum }
-    }
-}
-
 /// An experiment, ready to run.
 #[derive(Clone)]
 pub struct Assembly {
@@ -172,6 +146,18 @@ impl Assembly {
         &self.spec
     }
 
+    /// The design in `params` as it is to be built, SI.
+    pub fn built(&self, params: &[f32]) -> Vec<f64> {
+        self.problem.training.law.as_built(&self.policy.design(params))
+    }
+
+    /// What the totals of the design groups are called in tables and plots: `stiffness_total`, or `gear` for a group of
+    /// one.
+    pub fn total_names(&self) -> Vec<String> {
+        let groups = self.policy.space().groups().iter();
+        groups.map(|g| total_name(&g.name, g.count)).collect()
+    }
+
     /// Fresh parameters.
     pub fn init(&self) -> Vec<f32> {
         self.policy.init(self.spec.seed, self.spec.controller.output_gain)
@@ -200,6 +186,11 @@ impl Assembly {
         spec.noise.train = train_noise;
         Ok(HardwarePolicy::new(spec, world.make.make(None).spec())?)
     }
+}
+
+/// The column of a group's total; a group of one is its own.
+pub fn total_name(group: &str, count: usize) -> String {
+    if count == 1 { group.to_owned() } else { format!("{group}_total") }
 }
 
 fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {

@@ -9,8 +9,9 @@ use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::assemble::{AssembleError, Assembly, World};
+use crate::assemble::{AssembleError, Assembly};
 use crate::stats::{Interval, Sample, StatsError, bootstrap_interval, wilson};
+use crate::worlds::World;
 
 /// Why there is no evaluation.
 #[derive(Debug, Error)]
@@ -180,13 +181,13 @@ impl Evaluation {
 /// The deterministic controller on the hardware of `design` in a world; for [`HardwarePolicy::controller_params`].
 ///
 /// [`HardwarePolicy::controller_params`]: hwasp_core::HardwarePolicy::controller_params
-pub(crate) fn sampler(assembly: &Assembly, world: &World, design: &[f64]) -> Result<Sampler, AssembleError> {
+pub fn sampler(assembly: &Assembly, world: &World, design: &[f64]) -> Result<Sampler, AssembleError> {
     let policy = assembly.fixed_in(world, design, false)?;
     Ok(Sampler::new(Arc::new(policy), Arc::clone(&world.make), None))
 }
 
 /// Episodes that training never sees.
-pub(crate) fn held_out(seed: u64, indices: Range<u64>) -> Episodes {
+pub fn held_out(seed: u64, indices: Range<u64>) -> Episodes {
     Episodes { seed, iteration: 0, indices, progress: 1.0, kind: EpisodeKind::Evaluation }
 }
 

@@ -5,9 +5,9 @@ use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, Sampler};
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
+use crate::error::TrainError;
 use crate::learned::{Clock, Learned, Loop};
 use crate::observer::{Event, Fault};
-use crate::train::TrainError;
 
 /// Iterations in a row in which the physics of most episodes may fail.
 const MOST_FAULTY_ITERATIONS: u64 = 3;
@@ -96,12 +96,12 @@ impl<'a> Gradient<'a> {
     }
 
     /// The share of the budget that is spent.
-    pub(crate) fn progress(&self) -> f64 {
+    fn progress(&self) -> f64 {
         self.learned.env_steps as f64 / self.assembly.spec().train.env_steps as f64
     }
 
     /// The episodes of the iteration at hand.
-    pub(crate) fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
+    fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
         let train = &self.assembly.spec().train;
         let asked = Episodes {
             seed: self.assembly.spec().seed,
@@ -114,12 +114,7 @@ impl<'a> Gradient<'a> {
     }
 
     /// The update of the iteration at hand.
-    pub(crate) fn learn(
-        &mut self,
-        executor: &dyn Executor,
-        batch: &Batch,
-        progress: f64,
-    ) -> Result<UpdateMetrics, TrainError> {
+    fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<UpdateMetrics, TrainError> {
         let asked = self.assembly.spec().train.episodes_per_iteration;
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
@@ -143,4 +138,24 @@ impl<'a> Gradient<'a> {
 pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
     let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
     (mean(batch.returns(discount)), mean(batch.returns(1.0)))
+}
+
+/// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
+///
+/// # Errors
+/// Of a state that is not one of this experiment. What fails in the iteration is in the result.
+pub fn repeat(
+    assembly: &Assembly,
+    from: &Archive,
+    executor: &dyn Executor,
+) -> Result<(Option<Batch>, Result<UpdateMetrics, TrainError>), StateError> {
+    let mut state = Gradient::new(assembly, Some(from))?;
+    let progress = state.progress();
+    Ok(match state.collect(executor) {
+        Ok(batch) => {
+            let outcome = state.learn(executor, &batch, progress);
+            (Some(batch), outcome)
+        }
+        Err(error) => (None, Err(error)),
+    })
 }

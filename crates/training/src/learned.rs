@@ -10,7 +10,9 @@ use hwasp_core::Executor;
 use crate::checkpoint::Checkpoint;
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
-use crate::train::TRAILING;
+
+/// Iterations over which the final training return is averaged, as the paper's curves are.
+pub const TRAILING: usize = 11;
 
 /// What a training loop runs with.
 pub(crate) struct Loop<'a> {

@@ -1,4 +1,4 @@
-//! The laboratory: experiment files, their assembly, training, run folders, evaluation, statistics and plots.
+//! Trainings: experiment files, their assembly, the loops that learn and search, evaluation and statistics.
 //!
 //! A program that embeds training needs three calls: [`spec::load`] and [`spec::resolve`] an experiment,
 //! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
@@ -6,44 +6,30 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
-pub mod checkpoint;
-pub mod compare;
-pub mod design;
-mod drawing;
+mod checkpoint;
+mod error;
 mod evaluate;
-pub mod export;
-pub mod files;
 mod gradient;
 mod learned;
-pub mod metrics;
+mod metrics;
 mod observer;
 mod paired;
-pub mod parts;
-pub mod play;
-pub mod plot;
-mod policy_file;
-pub mod project;
-mod replay;
-pub mod report;
-mod run_folder;
 mod search;
 pub mod spec;
 pub mod stats;
-mod summary;
-mod tensorboard;
-mod tensors;
-pub mod text;
-pub mod tolerances;
 mod train;
+mod worlds;
 
-pub use assemble::{AssembleError, Assembly, LearnerSettings, Problems, World};
-pub use drawing::Drawing;
-pub use evaluate::{EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native};
+pub use assemble::{AssembleError, Assembly, LearnerSettings, law, total_name};
+pub use checkpoint::Checkpoint;
+pub use error::TrainError;
+pub use evaluate::{
+    EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native, held_out, sampler,
+};
+pub use gradient::repeat;
+pub use learned::TRAILING;
+pub use metrics::MetricsRow;
 pub use observer::{Event, Fault, Observer, ObserverError};
-pub use paired::Change;
-pub use policy_file::{PolicyFileError, read_policy, write_policy};
-pub use replay::{Replay, ReplayError, replay};
-pub use run_folder::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun};
-pub use summary::{DesignGroupSummary, Summary};
-pub use tensorboard::{TensorBoard, TensorBoardError};
-pub use train::{TRAILING, TrainError, Trained, train, train_from};
+pub use paired::{Change, Reference};
+pub use train::{Trained, beginning, params_at, train, train_from};
+pub use worlds::{Problems, World};

@@ -26,18 +26,19 @@ pub struct Change {
 }
 
 /// An evaluation that others are held against, in the world where the result has to work.
-pub(crate) struct Reference<'a> {
+pub struct Reference<'a> {
     assembly: &'a Assembly,
     /// Episodes and the root seed of their starts.
     asked: (u64, u64),
     executor: &'a dyn Executor,
-    pub(crate) evaluation: Evaluation,
+    /// What it is worth.
+    pub evaluation: Evaluation,
     trials: Vec<Option<Trial>>,
 }
 
 impl<'a> Reference<'a> {
     /// The controller in `params` on the hardware of `design`, SI.
-    pub(crate) fn new(
+    pub fn new(
         assembly: &'a Assembly,
         design: &[f64],
         params: &[f32],
@@ -49,7 +50,7 @@ impl<'a> Reference<'a> {
     }
 
     /// Another design or another controller on the same episodes, and what that changes.
-    pub(crate) fn against(&self, design: &[f64], params: &[f32]) -> Result<(Evaluation, Change), EvaluateError> {
+    pub fn against(&self, design: &[f64], params: &[f32]) -> Result<(Evaluation, Change), EvaluateError> {
         let (evaluation, trials) = tried(self.assembly, design, params, self.asked, self.executor)?;
         Ok((evaluation, Change::between(&self.trials, &trials, self.asked.1)?))
     }

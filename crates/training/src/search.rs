@@ -9,16 +9,12 @@ use hwasp_core::{EpisodeKind, Episodes, Policy, Purpose, Sampler, Serial, stream
 use rand::RngExt;
 
 use self::state::{Generation, Scored, State};
-use crate::assemble::{AssembleError, Assembly};
+use crate::assemble::{Assembly, FINAL_EPISODES, popsize};
+use crate::error::TrainError;
 use crate::gradient::{gradient, mean_returns};
 use crate::learned::{Clock, Learned, Loop};
 use crate::observer::Event;
-use crate::spec::{CmaesSpec, Method, Score};
-use crate::train::TrainError;
-
-/// Episodes on which the last centre and the best candidate are compared: a candidate that was best of many on few
-/// episodes was lucky, too.
-const FINAL_EPISODES: usize = 16;
+use crate::spec::{Method, Score};
 
 /// What is searched and how a candidate is scored.
 struct Problem<'a> {
@@ -56,11 +52,6 @@ pub(crate) fn best_so_far(assembly: &Assembly, from: &Archive) -> Result<Vec<f32
     let problem = Problem::new(assembly);
     let best = problem.state(Some(from))?.best;
     Ok(best.map_or(problem.start, |(_, params)| params))
-}
-
-/// Candidates as asked for; none for the default.
-fn popsize(cmaes: &CmaesSpec) -> Option<usize> {
-    (cmaes.popsize > 0).then_some(cmaes.popsize)
 }
 
 impl<'a> Problem<'a> {
@@ -247,52 +238,5 @@ impl<'a> Problem<'a> {
             }
         };
         learned
-    }
-}
-
-impl Assembly {
-    /// Real simulator steps that one candidate of a search costs, at most.
-    pub(crate) fn candidate_steps(&self) -> u64 {
-        let spec = self.spec();
-        if spec.method.trains_inside() {
-            // A training ends with a whole iteration.
-            return spec.search.inner_env_steps.next_multiple_of(spec.train.rows() as u64);
-        }
-        spec.search.episodes as u64 * spec.train.episode_steps as u64
-    }
-
-    /// What the choice at the end of a search costs, at most.
-    pub(crate) fn final_steps(&self) -> u64 {
-        let spec = self.spec();
-        if spec.method.trains_inside() { 0 } else { 2 * FINAL_EPISODES as u64 * spec.train.episode_steps as u64 }
-    }
-
-    /// Candidates of a generation of the method's search, and the steps of each at most; none where it does not search.
-    pub fn generation(&self) -> Option<(usize, u64)> {
-        let spec = self.spec();
-        let dimension =
-            if spec.method.trains_inside() { self.policy.free_design().len() } else { self.policy.param_count() };
-        let popsize = match spec.method {
-            Method::Ars | Method::ArsRl => 2 * spec.ars.directions,
-            Method::Cmaes | Method::CmaesRl => {
-                CmaesConfig { popsize: popsize(&spec.cmaes), ..CmaesConfig::default() }.first_popsize(dimension)
-            }
-            Method::Hwasp | Method::Minimal | Method::Fixed => return None,
-        };
-        Some((popsize, self.candidate_steps()))
-    }
-
-    /// Refuses a search whose budget does not hold one generation.
-    pub(crate) fn check_budget(&self) -> Result<(), AssembleError> {
-        let Some((popsize, each)) = self.generation() else { return Ok(()) };
-        if self.spec().method.trains_inside() && self.policy.free_design().is_empty() {
-            return Err(AssembleError::NothingToSearch { method: self.spec().method.name() });
-        }
-        let given = self.spec().train.env_steps;
-        let needed = popsize as u64 * each + self.final_steps();
-        if given < needed {
-            return Err(AssembleError::Budget { given, needed, popsize, each });
-        }
-        Ok(())
     }
 }

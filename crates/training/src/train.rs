@@ -2,66 +2,16 @@
 
 use std::sync::atomic::AtomicBool;
 
-use hwasp_algos::{LearnError, SearchError, StateError};
-use hwasp_core::{Executor, RolloutError};
-use thiserror::Error;
+use hwasp_core::Executor;
 
-use crate::assemble::{AssembleError, Assembly};
+use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
-use crate::drawing::total_name;
-use crate::evaluate::{EvaluateError, Evaluation, evaluate};
+use crate::error::TrainError;
+use crate::evaluate::{Evaluation, evaluate};
 use crate::gradient::{Gradient, gradient};
 use crate::learned::{Clock, Loop};
-use crate::observer::{Event, Observer, ObserverError};
+use crate::observer::{Event, Observer};
 use crate::search::{best_so_far, search};
-
-/// Why a training ended early.
-#[derive(Debug, Error)]
-pub enum TrainError {
-    /// An episode failed.
-    #[error(transparent)]
-    Rollout(#[from] RolloutError),
-    /// An update failed.
-    #[error(transparent)]
-    Learn(#[from] LearnError),
-    /// The physics of most episodes failed, again and again: what is learned from the rest is worth nothing.
-    #[error(
-        "the physics of most episodes failed in {iterations} iterations in a row ({failed} of {asked} in the last); {first}"
-    )]
-    Physics {
-        /// How many iterations.
-        iterations: u64,
-        /// Episodes that failed in the last of them.
-        failed: usize,
-        /// Episodes asked for in each.
-        asked: usize,
-        /// The first of those that failed.
-        first: RolloutError,
-    },
-    /// Someone asked it to stop. Its observer has a checkpoint of all that was done.
-    #[error("stopped after {env_steps} of {budget} steps")]
-    Interrupted {
-        /// Real simulator steps taken.
-        env_steps: u64,
-        /// Those of the whole training.
-        budget: u64,
-    },
-    /// The state of what learns cannot be saved, or a saved one is not of this experiment.
-    #[error(transparent)]
-    State(#[from] StateError),
-    /// A search could not go on.
-    #[error(transparent)]
-    Search(#[from] SearchError),
-    /// A candidate's own training cannot be put together.
-    #[error(transparent)]
-    Assemble(#[from] AssembleError),
-    /// The evaluation failed.
-    #[error(transparent)]
-    Evaluate(#[from] EvaluateError),
-    /// Someone who watched could not go on, the run folder for one.
-    #[error(transparent)]
-    Observer(#[from] ObserverError),
-}
 
 /// What a training gave.
 #[derive(Clone, Debug)]
@@ -74,7 +24,7 @@ pub struct Trained {
     pub env_steps: u64,
     /// Time the training took, s, the evaluation apart.
     pub wall_s: f64,
-    /// The mean discounted return of the training episodes over the last [`TRAILING`] iterations.
+    /// The mean discounted return of the training episodes over the last [`TRAILING`](crate::TRAILING) iterations.
     pub training_discounted_return: f64,
     /// The same, undiscounted.
     pub training_return: f64,
@@ -85,9 +35,6 @@ pub struct Trained {
     /// The final design on held-out starts.
     pub evaluation: Evaluation,
 }
-
-/// Iterations over which the final training return is averaged, as the paper's curves are.
-pub const TRAILING: usize = 11;
 
 /// Trains an experiment to the end of its budget.
 ///
@@ -138,28 +85,19 @@ pub fn train_from(
     })
 }
 
-impl Assembly {
-    /// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
-    ///
-    /// # Errors
-    /// Where a parameter is no number.
-    pub fn beginning(&self, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
-        Ok(Gradient::beginning(self, params).checkpoint()?)
-    }
+/// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
+///
+/// # Errors
+/// Where a parameter is no number.
+pub fn beginning(assembly: &Assembly, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
+    Ok(Gradient::beginning(assembly, params).checkpoint()?)
+}
 
-    /// The parameters that a training had come to: the learner's, or the best of a search.
-    pub fn params_at(&self, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
-        let archive = &checkpoint.archive;
-        if self.spec().method.searches() {
-            return best_so_far(self, archive);
-        }
-        Ok(Gradient::new(self, Some(archive))?.params())
+/// The parameters that a training had come to: the learner's, or the best of a search.
+pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
+    let archive = &checkpoint.archive;
+    if assembly.spec().method.searches() {
+        return best_so_far(assembly, archive);
     }
-
-    /// What the totals of the design groups are called in tables and plots: `stiffness_total`, or `gear` for a group of
-    /// one.
-    pub fn total_names(&self) -> Vec<String> {
-        let groups = self.policy.space().groups().iter();
-        groups.map(|g| total_name(&g.name, g.count)).collect()
-    }
+    Ok(Gradient::new(assembly, Some(archive))?.params())
 }

@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
-mod shared;
-
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hwasp_core::{Serial, Step, Threads};
-use hwasp_training::metrics::MetricsRow;
-use hwasp_training::{AssembleError, Assembly, Event, Observer, ObserverError, Trained, evaluate, spec, train};
-use shared::spoil;
+use hwasp_testing::spoil;
+use hwasp_training::{
+    AssembleError, Assembly, Event, MetricsRow, Observer, ObserverError, Trained, evaluate, spec, train,
+};
 
 /// Small searches on the reach problem: 30 steps an episode.
 fn assembly(method: &str, settings: &[(&str, &str)]) -> Result<Assembly, AssembleError> {

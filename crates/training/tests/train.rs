@@ -5,8 +5,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Placement, Serial, Threads};
-use hwasp_training::metrics::MetricsRow;
-use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, Trained, spec, train};
+use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, TrainError, Trained, spec, train};
 
 /// An experiment with settings on top; `reach` is cut to two iterations.
 fn assembly(experiment: &str, method: Option<&str>, settings: &[(&str, &str)]) -> Assembly {

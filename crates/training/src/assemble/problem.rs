@@ -8,10 +8,11 @@ use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
 
-use super::{AssembleError, Assembly, Problems, World};
+use super::{AssembleError, Assembly};
 use crate::spec::{GraspProblem, GroupSpec, InitialSpec, InterfaceKind, MassSpringSpec, Problem, RewardKind, Spec};
 #[cfg(feature = "mujoco")]
 use crate::spec::{ObjectKind, ViewpointKind};
+use crate::worlds::{Problems, World};
 
 pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
     // Problems with one group of parameters; the hand has more.
@@ -61,7 +62,7 @@ pub(super) fn problem(spec: &Spec) -> Result<Problems, AssembleError> {
 }
 
 /// The law of the world in which one trains. That of the hand is there without the engine, too.
-pub(crate) fn law(spec: &Spec) -> Result<Law, AssembleError> {
+pub fn law(spec: &Spec) -> Result<Law, AssembleError> {
     let (Problem::ZGrasp(p) | Problem::SpatialGrasp(p)) = &spec.task.problem else {
         return Ok(problem(spec)?.training.law);
     };
@@ -130,7 +131,7 @@ impl Assembly {
     }
 
     /// What the experiment says of its grasps, if it is about any.
-    pub(crate) fn grasp_problem(&self) -> Result<&GraspProblem, AssembleError> {
+    pub fn grasp_problem(&self) -> Result<&GraspProblem, AssembleError> {
         match &self.spec().task.problem {
             Problem::ZGrasp(settings) | Problem::SpatialGrasp(settings) => Ok(settings),
             _ => Err(AssembleError::NoGrasp { problem: self.spec().task.name() }),

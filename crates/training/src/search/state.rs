@@ -9,9 +9,9 @@ use hwasp_core::Serial;
 
 use super::Problem;
 use crate::checkpoint::Checkpoint;
+use crate::error::TrainError;
 use crate::learned::{Clock, Learned, Loop};
 use crate::observer::{Event, Observer, ObserverError};
-use crate::train::TrainError;
 
 /// How old a candidate's own training may be in a checkpoint that another candidate had made.
 const STALE: Duration = Duration::from_secs(1);

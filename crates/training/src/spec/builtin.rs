@@ -7,7 +7,9 @@ use std::path::Path;
 use super::fault::{SpecErrors, shorten};
 use super::layers::{LONGEST_FILE, Layers};
 use super::suggest::{listed, nearest};
-use crate::run_folder::EXPERIMENT;
+
+/// The file of an experiment, where a folder is named instead of it.
+pub const EXPERIMENT: &str = "experiment.toml";
 
 macro_rules! embedded {
     ($($name:literal),+ $(,)?) => {

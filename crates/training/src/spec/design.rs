@@ -55,7 +55,7 @@ pub struct InitialValue {
 
 impl InitialSpec {
     /// Every group at a value of its own, SI; the values are in the order of the groups.
-    pub(crate) fn at(groups: &[GroupSpec], values: &[f64]) -> Self {
+    pub fn at(groups: &[GroupSpec], values: &[f64]) -> Self {
         let only = groups.len() == 1;
         let initial =
             |(g, &value): (&GroupSpec, &f64)| InitialValue { group: g.name, value, dimension: g.dimension, only };

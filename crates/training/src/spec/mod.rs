@@ -37,24 +37,22 @@ mod values;
 
 use serde::Serialize;
 
-pub use builtin::{EXPERIMENTS, load};
+pub use builtin::{EXPERIMENT, EXPERIMENTS, load};
 pub use controller::{ActivationKind, ControllerSpec, MOST_LAYERS, WIDEST_LAYER};
 pub use design::{DesignSpec, InitialSpec, InitialValue, Place, PlacedRange};
-pub use fault::{Excerpt, Fault, SpecErrors};
+pub use fault::{Excerpt, Fault, SpecErrors, shorten};
 pub use grasp::{GraspProblem, HandRangeKind, ObjectKind, SpanSpec, ViewpointKind};
 pub use layers::{LONGEST_FILE, Layers};
 pub use learner::{Algorithm, BaselineKind, BaselineSpec, LearnerSpec, PpoSpec, TrpoSpec};
 pub use noise::{EffortSpec, NoiseSpec, PerCommand};
 pub use own::{OwnError, OwnProblem, OwnTask, Setting, register, registered};
 pub use search::{ArsSpec, ArsVariant, CmaesSpec, Score, SearchSpec};
+pub use suggest::nearest;
 pub use task::{
     BarProblem, GroupSpec, InterfaceKind, MOST_SEGMENTS, MOST_STEPS, MassSpringSpec, Problem, ProblemKind,
     ReachProblem, RewardKind, StiffnessProblem, TaskSpec,
 };
 pub use train::{MOST_ROWS, TrainSpec};
-
-pub(crate) use fault::shorten;
-pub(crate) use suggest::nearest;
 
 use names::named;
 use section::{Reader, Section};

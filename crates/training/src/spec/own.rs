@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::section::Section;
 use super::task::{GroupSpec, MOST_STEPS, ProblemKind};
 use super::values::with_unit;
-use crate::assemble::Problems;
+use crate::worlds::Problems;
 
 /// Whatever a problem of one's own finds wrong.
 type AnyError = Box<dyn Error + Send + Sync>;

@@ -4,7 +4,7 @@
 const LONGEST: usize = 64;
 
 /// The candidate that `typed` was probably meant to be, by edit distance.
-pub(crate) fn nearest<'c>(typed: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+pub fn nearest<'c>(typed: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if typed.len() > LONGEST {
         return None;
     }

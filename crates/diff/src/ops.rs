@@ -155,4 +155,4 @@ macro_rules! with_binary {
     };
 }
 
-pub(super) use {with_binary, with_unary};
+pub(crate) use {with_binary, with_unary};

@@ -1,4 +1,4 @@
-//! What is done with bytes of strangers. The fuzz targets call it, and `crates/lab/tests/fuzz_corpus.rs`, which includes
+//! What is done with bytes of strangers. The fuzz targets call it, and `crates/runs/tests/fuzz_corpus.rs`, which includes
 //! this file, replays all inputs that were kept.
 
 use std::sync::LazyLock;
@@ -6,10 +6,11 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::{Archive, Array};
 use hwasp_core::Serial;
-use hwasp_lab::checkpoint::{Checkpoint, Header};
-use hwasp_lab::metrics::{MetricsRow, MetricsTable, MetricsWriter};
-use hwasp_lab::spec::{self, Layers};
-use hwasp_lab::{Assembly, Event, Observer, ObserverError, read_policy, train_from, write_policy};
+use hwasp_runs::checkpoint::{Header, decode, encode};
+use hwasp_runs::metrics::{MetricsTable, MetricsWriter};
+use hwasp_runs::{read_policy, write_policy};
+use hwasp_training::spec::{self, Layers};
+use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, params_at, train_from};
 
 /// The hash that stands for an experiment.
 const EXPERIMENT: &str = "experiment";
@@ -80,17 +81,17 @@ pub fn experiment(bytes: &[u8]) {
 /// A checkpoint as a file: refused, or read so that it gives the same bits once it is written and read again.
 pub fn checkpoint(bytes: &[u8]) {
     if let Ok(header) = Header::read(bytes)
-        && let Ok(read) = Checkpoint::decode(bytes, &header.experiment)
+        && let Ok(read) = decode(bytes, &header.experiment)
     {
         comes_back(&read, header.fault.as_deref());
     }
-    let _ = Checkpoint::decode(bytes, EXPERIMENT).map_err(|error| error.to_string());
+    let _ = decode(bytes, EXPERIMENT).map_err(|error| error.to_string());
 }
 
 fn comes_back(checkpoint: &Checkpoint, fault: Option<&str>) {
-    let bytes = checkpoint.encode(EXPERIMENT, fault).expect("a checkpoint can be written");
-    let read = Checkpoint::decode(&bytes, EXPERIMENT).expect("what was written can be read");
-    assert_eq!(read.encode(EXPERIMENT, fault).expect("and written again"), bytes);
+    let bytes = encode(&checkpoint, EXPERIMENT, fault).expect("a checkpoint can be written");
+    let read = decode(&bytes, EXPERIMENT).expect("what was written can be read");
+    assert_eq!(encode(&read, EXPERIMENT, fault).expect("and written again"), bytes);
     assert_eq!((read.iteration, read.env_steps), (checkpoint.iteration, checkpoint.env_steps));
     let bits = |archive: &Archive| archive.iter().map(|(name, array)| (name.clone(), bits(array))).collect::<Vec<_>>();
     assert_eq!(bits(&read.archive), bits(&checkpoint.archive));
@@ -126,7 +127,7 @@ pub fn state(bytes: &[u8]) {
         change(&mut checkpoint.archive, edit, array, place, std::array::from_fn(|_| next().unwrap_or_default() as u8));
     }
     comes_back(&checkpoint, None);
-    match assembly.params_at(&checkpoint) {
+    match params_at(assembly, &checkpoint) {
         Ok(params) => assert_eq!(params.len(), assembly.init().len()),
         Err(error) => assert!(!error.to_string().is_empty()),
     }

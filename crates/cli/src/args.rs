@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use hwasp_lab::export::{self, Kind};
-use hwasp_lab::play;
-use hwasp_lab::plot::XAxis;
-use hwasp_lab::spec::{Method, TrainSpec};
+use hwasp_export::{Kind, MOST_SAMPLES};
+use hwasp_plot::XAxis;
+use hwasp_report::play;
+use hwasp_training::spec::{Method, TrainSpec};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -250,7 +250,7 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
     /// Also write random observations with this program's answers, to hold another runtime against: samples.safetensors
-    #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=export::MOST_SAMPLES))]
+    #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=MOST_SAMPLES))]
     pub(crate) samples: Option<u64>,
     #[command(flatten)]
     pub(crate) kinds: KindArgs,

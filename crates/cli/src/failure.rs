@@ -5,15 +5,19 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use hwasp_lab::checkpoint::CheckpointError;
-use hwasp_lab::compare::CompareError;
-use hwasp_lab::plot::PlotError;
-use hwasp_lab::{PolicyFileError, ReplayError, RunError};
+use hwasp_plot::PlotError;
+use hwasp_runs::checkpoint::CheckpointError;
+use hwasp_runs::{PolicyFileError, ReplayError, RunError};
+use hwasp_study::CompareError;
+use hwasp_workshop::WorkshopError;
 
 /// The file of a run folder that makes it one.
 const EXPERIMENT: &str = "experiment.toml";
 /// The way out where a picture cannot be written.
 pub(crate) const OTHER_FILE: &str = "name a file in a folder that is there and may be written, with --out";
+
+/// The way out where a folder cannot be written.
+const OTHER_FOLDER: &str = "name another folder with --out";
 
 /// An error, and whether it was there before any work began.
 #[derive(Debug)]
@@ -76,6 +80,11 @@ fn way_out(error: &(dyn Error + 'static)) -> Option<String> {
         return of_cell(error);
     }
     match error.downcast_ref() {
+        Some(WorkshopError::Run(error)) => return of_run(error),
+        Some(WorkshopError::Plot(PlotError::Write { .. })) => return Some(OTHER_FOLDER.into()),
+        _ => {}
+    }
+    match error.downcast_ref() {
         Some(ReplayError::Run(error)) => of_run(error),
         _ => of_run(error.downcast_ref()?),
     }
@@ -124,9 +133,7 @@ fn of_run(error: &RunError) -> Option<String> {
         },
         RunError::Io { action: "write", .. } => "make room there, or see that it may be written, and try again".into(),
         RunError::Io { action: "lock", .. } => "see that it is a file and may be written, or remove it".into(),
-        RunError::Io { action: "create", .. } | RunError::Plot(PlotError::Write { .. }) => {
-            "name another folder with --out".into()
-        }
+        RunError::Io { action: "create", .. } => OTHER_FOLDER.into(),
         _ => return None,
     })
 }

@@ -3,8 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use hwasp_lab::compare::Watch;
-use hwasp_lab::{Event, TrainError};
+use hwasp_study::Watch;
+use hwasp_training::{Event, TrainError};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::log::has_terminal;

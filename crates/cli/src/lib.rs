@@ -3,7 +3,7 @@
 //! ```no_run
 //! use std::process::ExitCode;
 //!
-//! use hwasp_lab::spec::OwnProblem;
+//! use hwasp_training::spec::OwnProblem;
 //!
 //! fn problem() -> OwnProblem {
 //!     # unimplemented!()
@@ -24,12 +24,13 @@ mod grid_progress;
 mod log;
 mod output;
 mod progress;
+mod project;
 mod report;
 
 use std::process::ExitCode;
 
 use clap::Parser;
-use hwasp_lab::spec::{self, OwnProblem};
+use hwasp_training::spec::{self, OwnProblem};
 
 use args::{Args, Command};
 use failure::Failure;

@@ -2,9 +2,8 @@
 
 use std::time::Instant;
 
-use hwasp_lab::metrics::MetricsRow;
-use hwasp_lab::text::{grouped, quantity};
-use hwasp_lab::{Assembly, Event, Observer, ObserverError};
+use hwasp_runs::text::{grouped, quantity};
+use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::log::{PROGRESS, has_terminal};

@@ -7,11 +7,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_core::Policy;
-use hwasp_lab::checkpoint::Checkpoint;
-use hwasp_lab::export::{ExportFile, Kind};
-use hwasp_lab::spec::Spec;
-use hwasp_lab::text::{grouped, quantity};
-use hwasp_lab::{Assembly, Evaluation, MeanInterval, Replay, Summary};
+use hwasp_export::{ExportFile, Kind};
+use hwasp_runs::text::{grouped, quantity};
+use hwasp_runs::{Replay, Summary};
+use hwasp_training::spec::Spec;
+use hwasp_training::{Assembly, Checkpoint, Evaluation, MeanInterval};
 
 /// The line before a training.
 pub(crate) fn beginning(spec: &Spec, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
@@ -174,7 +174,7 @@ fn shorten(names: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwasp_lab::SuccessRate;
+    use hwasp_training::SuccessRate;
 
     /// An evaluation whose success was counted by these kinds.
     fn counted(kinds: &[&str]) -> Evaluation {

@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `f32` (training) or `f64` (simulation and checks).
 pub trait Float:
-    crate::dense::kernels::Lanes
+    crate::vectors::Lanes
     + Copy
     + Debug
     + Default

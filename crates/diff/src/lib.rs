@@ -9,14 +9,17 @@ mod draw;
 pub mod fast;
 mod float;
 mod gradcheck;
+mod ops;
 mod program;
 mod scalar;
 mod trace;
+mod vectors;
 
 pub use dense::{Activation, Mlp, MlpTape};
 pub use draw::GraphStyle;
 pub use float::Float;
 pub use gradcheck::{GradCheck, GradCheckError, GradCheckSettings, gradcheck};
-pub use program::{Binary, Interpreter, Program, ProgramTape, Unary};
+pub use ops::{Binary, Unary};
+pub use program::{Interpreter, Program, ProgramTape};
 pub use scalar::Scalar;
 pub use trace::Var;

@@ -13,8 +13,8 @@ mod tests;
 use std::process::ExitCode;
 
 use hwasp_core::{Dimension, Environment, Law, Robot};
-use hwasp_lab::Problems;
-use hwasp_lab::spec::{OwnProblem, Setting};
+use hwasp_training::Problems;
+use hwasp_training::spec::{OwnProblem, Setting};
 
 use arm::Arm;
 use hold::Hold;

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Law, Plant, Serial, check_env};
 use hwasp_diff::{GradCheckSettings, gradcheck};
-use hwasp_lab::spec::{self, Layers};
-use hwasp_lab::{Assembly, evaluate, train};
+use hwasp_training::spec::{self, Layers};
+use hwasp_training::{Assembly, evaluate, train};
 
 use crate::arm::Arm;
 use crate::problem;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_lab::compare::{self, CellResult, CompareError, Comparison, Contender, Grid};
+use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid};
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
@@ -43,7 +43,7 @@ pub(super) fn run_grid(
     let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
     let progress = GridProgress::new(quiet, threads);
     let executor = Threads::new(threads)?;
-    let results = compare::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
+    let results = study::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
         CompareError::Other { .. } => Failure::input(error),
         _ => error.into(),
     })?;

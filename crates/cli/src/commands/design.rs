@@ -1,6 +1,6 @@
 //! `hwasp design`.
 
-use hwasp_lab::design::{DesignReport, write_closing};
+use hwasp_workshop::design::{DesignReport, write_closing};
 
 use super::run_folder;
 use crate::args::DesignArgs;

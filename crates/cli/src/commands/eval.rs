@@ -1,6 +1,6 @@
 //! `hwasp eval`.
 
-use hwasp_lab::{EvaluateError, evaluate, evaluate_native};
+use hwasp_training::{EvaluateError, evaluate, evaluate_native};
 
 use super::{executor, saved_run};
 use crate::args::EvalArgs;

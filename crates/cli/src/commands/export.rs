@@ -1,6 +1,6 @@
 //! `hwasp export`.
 
-use hwasp_lab::export::{ExportError, Kind, Source, export};
+use hwasp_export::{ExportError, Kind, Source, export};
 
 use super::run_folder;
 use crate::args::ExportArgs;

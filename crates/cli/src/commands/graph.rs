@@ -1,5 +1,7 @@
 //! `hwasp graph`.
 
+use hwasp_plot::drawing;
+
 use super::{experiment, write_out};
 use crate::args::GraphArgs;
 use crate::failure::Failure;
@@ -7,7 +9,7 @@ use crate::output;
 
 pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
     let (_, assembly) = experiment(&args.experiment.experiment, &args.experiment.settings, &[])?;
-    let drawing = assembly.drawing();
+    let drawing = drawing(&assembly);
     let Some(path) = &args.out else {
         return Ok(output::print(&drawing.dot)?);
     };

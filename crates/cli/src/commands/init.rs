@@ -3,11 +3,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hwasp_lab::project::{self, Origin, Project, ProjectError, Template};
-
 use crate::args::{InitArgs, TemplateArg};
 use crate::failure::Failure;
 use crate::output;
+use crate::project::{self, Origin, Project, ProjectError, Template};
 
 pub(crate) fn run(args: &InitArgs) -> Result<(), Failure> {
     let template = match args.template {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hwasp_lab::spec::{self, EXPERIMENTS};
+use hwasp_training::spec::{self, EXPERIMENTS};
 
 use crate::failure::Failure;
 use crate::output;

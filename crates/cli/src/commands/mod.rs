@@ -24,8 +24,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Executor, Serial, Threads};
-use hwasp_lab::spec::{self, Layers, Spec};
-use hwasp_lab::{Assembly, SavedRun};
+use hwasp_runs::SavedRun;
+use hwasp_training::Assembly;
+use hwasp_training::spec::{self, Layers, Spec};
 
 use crate::args::SettingsArgs;
 use crate::failure::{Failure, OTHER_FILE};

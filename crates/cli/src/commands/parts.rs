@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use hwasp_core::Executor;
-use hwasp_lab::parts::{
+use hwasp_runs::{Provenance, RunError};
+use hwasp_workshop::parts::{
     Bench, Catalogue, Judge, PARTS, PartsError, PartsWorth, SHEET, TUNED, Tuning, TuningFolder, snap,
 };
-use hwasp_lab::{Provenance, RunError};
 
 use super::train::into_folder;
 use super::{executor, saved_run, stop_on_signal, typed};

@@ -1,6 +1,7 @@
 //! `hwasp play`.
 
-use hwasp_lab::{SavedRun, play};
+use hwasp_report::play;
+use hwasp_runs::SavedRun;
 
 use super::saved_run;
 use crate::args::PlayArgs;

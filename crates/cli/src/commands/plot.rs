@@ -1,6 +1,6 @@
 //! `hwasp plot`.
 
-use hwasp_lab::plot::{PlotError, PlotOptions, curves, write_plot};
+use hwasp_plot::{PlotError, PlotOptions, curves, plot_options, saved_curve, write_plot};
 
 use super::saved_run;
 use crate::args::PlotArgs;
@@ -10,10 +10,10 @@ use crate::output;
 pub(crate) fn run(args: &PlotArgs) -> Result<(), Failure> {
     let runs = args.runs.iter().map(|path| saved_run(path, &[])).collect::<Result<Vec<_>, _>>()?;
     let x_axis = args.axis.axis();
-    let all = runs.iter().map(|run| run.curve(x_axis)).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
-    let mut options = PlotOptions { x_axis, ..runs[0].plot_options(args.title.clone()) };
+    let all = runs.iter().map(|run| saved_curve(run, x_axis)).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+    let mut options = PlotOptions { x_axis, ..plot_options(runs[0].assembly(), args.title.clone()) };
     for run in &runs[1..] {
-        let further = run.plot_options(String::new()).panels;
+        let further = plot_options(run.assembly(), String::new()).panels;
         for panel in further {
             if !options.panels.iter().any(|p| p.column == panel.column) {
                 options.panels.push(panel);

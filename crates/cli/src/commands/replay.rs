@@ -1,6 +1,6 @@
 //! `hwasp replay`.
 
-use hwasp_lab::replay;
+use hwasp_runs::replay;
 
 use super::executor;
 use crate::args::ReplayArgs;

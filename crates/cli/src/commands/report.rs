@@ -1,6 +1,6 @@
 //! `hwasp report`.
 
-use hwasp_lab::report::report;
+use hwasp_report::report;
 
 use super::{run_folder, write_out};
 use crate::args::ReportArgs;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use hwasp_lab::compare::{FIGURES, PaperFigure};
+use hwasp_study::{FIGURES, PaperFigure};
 
 use super::compare::run_grid;
 use super::stop_on_signal;

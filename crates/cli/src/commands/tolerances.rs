@@ -1,7 +1,7 @@
 //! `hwasp tolerances`.
 
-use hwasp_lab::EvaluateError;
-use hwasp_lab::tolerances::{PICTURES, TOLERANCES, tolerances};
+use hwasp_training::EvaluateError;
+use hwasp_workshop::tolerances::{PICTURES, TOLERANCES, errors_of, tolerances};
 
 use super::{executor, saved_run};
 use crate::args::TolerancesArgs;
@@ -12,7 +12,7 @@ use crate::{output, report};
 pub(crate) fn run(args: &TolerancesArgs) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &[])?;
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
-    let errors = assembly.manufacturing_errors(&params, &args.error).map_err(Failure::input)?;
+    let errors = errors_of(assembly, &params, &args.error).map_err(Failure::input)?;
     let asked = args.held_out.asked(&assembly.spec().train);
     let executor = executor(args.held_out.threads)?;
     let mut counter = Counter::new("designs simulated");

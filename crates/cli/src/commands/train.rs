@@ -4,11 +4,9 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
-use hwasp_lab::checkpoint::Checkpoint;
-use hwasp_lab::{
-    Assembly, Keeping, Observer, ObserverError, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard,
-    TrainError, Trained, train_from,
-};
+use hwasp_plot::curves_svg;
+use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
+use hwasp_training::{Assembly, Checkpoint, Observer, ObserverError, TrainError, Trained, train_from};
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
 use crate::args::TrainArgs;
@@ -60,7 +58,7 @@ pub(super) fn into_folder(
     progress.finish();
     let trained = trained.map_err(|error| ended(error, folder))?;
     let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", folder.path().display());
-    let finished = folder.finish(assembly, &trained);
+    let finished = folder.finish(assembly, &trained, &curves_svg);
     let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
     Ok((trained, summary))
 }

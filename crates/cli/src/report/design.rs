@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use hwasp_lab::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
-use hwasp_lab::text::Shown;
+use hwasp_runs::text::Shown;
+use hwasp_workshop::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
 
 /// Travel between the printed rows of free closing, mm.
 const ROWS_EVERY: usize = 4;

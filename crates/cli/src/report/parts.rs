@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use hwasp_lab::parts::{JointDesign, JointParts, PartsList};
-use hwasp_lab::tolerances::{Sensitivities, Side};
-use hwasp_lab::{Change, Evaluation, MeanInterval};
+use hwasp_training::{Change, Evaluation, MeanInterval};
+use hwasp_workshop::parts::{JointDesign, JointParts, PartsList};
+use hwasp_workshop::tolerances::{Sensitivities, Side};
 
 use super::quantity;
 

@@ -1,4 +1,4 @@
-//! `hwasp play` where nothing can be drawn. What it draws is tested in `hwasp-lab`, where there is an OpenGL to draw with.
+//! `hwasp play` where nothing can be drawn. What it draws is tested in `hwasp-report`, where there is an OpenGL to draw with.
 
 use crate::sandbox::Sandbox;
 

@@ -1,7 +1,7 @@
 //! A program read out step by step, for those who write it in another language.
 
-use super::ops::{Binary, Unary};
 use super::{Instruction, Program, Slot};
+use crate::ops::{Binary, Unary};
 
 /// What the steps of a program mean to a reader: names in the text of another language, say, or numbers of another kind.
 ///

@@ -1,0 +1,168 @@
+//! Projects for mechanisms of one's own: a folder with a law, a plant, a task, an experiment and tests, ready to be built.
+
+mod name;
+mod template;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+pub(crate) use self::template::Template;
+
+/// Where the crates are that a project is built with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// A checkout on this machine; its absolute path.
+    Checkout(PathBuf),
+    /// The repository on the network.
+    Repository,
+}
+
+/// A project to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Project {
+    folder: PathBuf,
+    name: String,
+    template: Template,
+    origin: Origin,
+}
+
+/// Why no project can be written. Nothing has changed then, unless a file could not be written.
+#[derive(Debug, Error)]
+pub(crate) enum ProjectError {
+    /// A folder with something in it.
+    #[error("{} is not empty: it has {}", .folder.display(), shown(.found))]
+    NotEmpty {
+        /// The folder.
+        folder: PathBuf,
+        /// What is in it.
+        found: Vec<String>,
+    },
+    /// A file where the folder should be.
+    #[error("{} is a file, where a project is a folder", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A name that Cargo takes for no package's.
+    #[error("`{name}` is no name for a package: {why}")]
+    Name {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// A folder that is no checkout.
+    #[error("{} is no checkout of hwasp: it has no {MARK} of the package hwasp-training", .path.display())]
+    NoCheckout {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The file system.
+    #[error("cannot {action} {}: {source}", .path.display())]
+    Io {
+        /// read, write …
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// By this file a checkout is known.
+const MARK: &str = "crates/training/Cargo.toml";
+
+impl Project {
+    /// Checks what was asked for. Without a `name` the folder's is taken, in lower case and with hyphens for spaces.
+    pub(crate) fn new(
+        folder: &Path,
+        name: Option<&str>,
+        template: Template,
+        origin: Origin,
+    ) -> Result<Self, ProjectError> {
+        let found = entries(folder)?;
+        if !found.is_empty() {
+            return Err(ProjectError::NotEmpty { folder: folder.to_owned(), found });
+        }
+        let name = name.map_or_else(|| name::of_folder(folder), str::to_owned);
+        name::check(&name)?;
+        Ok(Self { folder: folder.to_owned(), name, template, origin })
+    }
+
+    /// Its name as a package.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the crates are that it is built with.
+    pub(crate) fn origin(&self) -> &Origin {
+        &self.origin
+    }
+
+    /// Writes it.
+    pub(crate) fn write(&self) -> Result<(), ProjectError> {
+        for (path, text) in self.template.files(&self.name, &self.origin)? {
+            let path = self.folder.join(path);
+            if let Some(parent) = path.parent() {
+                fs::create_dir_all(parent).map_err(|source| io_error("create", parent, source))?;
+            }
+            fs::write(&path, text).map_err(|source| io_error("write", &path, source))?;
+        }
+        if let Origin::Checkout(checkout) = &self.origin {
+            // The versions that hwasp is tested with; they are on this machine already.
+            let (from, to) = (checkout.join("Cargo.lock"), self.folder.join("Cargo.lock"));
+            if from.is_file() {
+                fs::copy(&from, &to).map_err(|source| io_error("write", &to, source))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The checkout of hwasp at `path`, as an absolute path.
+pub(crate) fn checkout(path: &Path) -> Result<Origin, ProjectError> {
+    let no_checkout = || ProjectError::NoCheckout { path: path.to_owned() };
+    let absolute = path.canonicalize().map_err(|_| no_checkout())?;
+    if is_checkout(&absolute) { Ok(Origin::Checkout(absolute)) } else { Err(no_checkout()) }
+}
+
+/// The checkout that a program was built in, if it lies in the target folder of one; else the repository.
+pub(crate) fn origin_of(program: &Path) -> Origin {
+    let checkout = program.ancestors().find(|folder| is_checkout(folder));
+    checkout.map_or(Origin::Repository, |folder| Origin::Checkout(folder.to_owned()))
+}
+
+fn is_checkout(folder: &Path) -> bool {
+    fs::read_to_string(folder.join(MARK)).is_ok_and(|manifest| manifest.contains("name = \"hwasp-training\""))
+}
+
+/// What is in a folder, in order; nothing where there is no folder. The store of a version control does not count.
+fn entries(folder: &Path) -> Result<Vec<String>, ProjectError> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(_) if folder.is_file() => return Err(ProjectError::File { path: folder.to_owned() }),
+        entries => entries.map_err(|source| io_error("create", folder, source))?,
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(|source| io_error("read", folder, source))?;
+        found.push(entry.file_name().to_string_lossy().into_owned());
+    }
+    found.retain(|name| name != ".git");
+    found.sort();
+    Ok(found)
+}
+
+/// The first few of some names.
+fn shown(names: &[String]) -> String {
+    const MOST: usize = 5;
+    let first = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MOST { format!("{first} and {} more", names.len() - MOST) } else { first }
+}
+
+fn io_error(action: &'static str, path: &Path, source: io::Error) -> ProjectError {
+    ProjectError::Io { action, path: path.to_owned(), source }
+}

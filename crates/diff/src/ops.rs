@@ -1,0 +1,158 @@
+//! The primitive operations: each value and derivative formula stands here, once, for every way of running a program.
+
+use crate::Float;
+
+/// A function of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Unary {
+    /// -a.
+    Neg,
+    /// e to the power of a.
+    Exp,
+    /// The natural logarithm.
+    Ln,
+    /// The square root.
+    Sqrt,
+    /// The sine of an angle in radians.
+    Sin,
+    /// The cosine of an angle in radians.
+    Cos,
+    /// The hyperbolic tangent.
+    Tanh,
+    /// The absolute value.
+    Abs,
+    /// The logistic function 1 / (1 + e^-a).
+    Sigmoid,
+}
+
+/// A function of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Binary {
+    /// a + b.
+    Add,
+    /// a - b.
+    Sub,
+    /// a·b.
+    Mul,
+    /// a / b.
+    Div,
+    /// The smaller of two.
+    Min,
+    /// The larger of two.
+    Max,
+}
+
+impl Unary {
+    /// The value at `a`, in the arithmetic that [`Scalar`](crate::Scalar) for `f64` uses.
+    #[inline(always)]
+    pub(crate) fn value<F: Float>(self, a: F) -> F {
+        match self {
+            Self::Neg => -a,
+            Self::Exp => a.exp(),
+            Self::Ln => a.ln(),
+            Self::Sqrt => a.sqrt(),
+            Self::Sin => a.sin(),
+            Self::Cos => a.cos(),
+            Self::Tanh => a.tanh(),
+            Self::Abs => a.abs(),
+            Self::Sigmoid => {
+                // The exponent is never positive, so nothing overflows.
+                let e = (-a.abs()).exp();
+                let d = F::ONE + e;
+                if a >= F::ZERO { F::ONE / d } else { e / d }
+            }
+        }
+    }
+
+    /// `g` times the derivative at `a`, where the value is `v`. Being a plain product it serves both directions: a
+    /// cotangent is pulled back with it and a tangent pushed forward.
+    #[inline(always)]
+    pub(crate) fn pull<F: Float>(self, g: F, a: F, v: F) -> F {
+        match self {
+            Self::Neg => -g,
+            Self::Exp => g * v,
+            Self::Ln => g / a,
+            Self::Sqrt => g * F::from_f64(0.5) / v,
+            Self::Sin => g * a.cos(),
+            Self::Cos => -g * a.sin(),
+            Self::Tanh => g * (F::ONE - v * v),
+            Self::Abs => {
+                let signed = if a < F::ZERO { -g } else { g };
+                if a == F::ZERO { F::ZERO } else { signed }
+            }
+            Self::Sigmoid => g * (v * (F::ONE - v)),
+        }
+    }
+}
+
+impl Binary {
+    /// The value at `(a, b)`.
+    #[inline(always)]
+    pub(crate) fn value<F: Float>(self, a: F, b: F) -> F {
+        match self {
+            Self::Add => a + b,
+            Self::Sub => a - b,
+            Self::Mul => a * b,
+            Self::Div => a / b,
+            Self::Min if b < a => b,
+            Self::Max if b > a => b,
+            Self::Min | Self::Max => a,
+        }
+    }
+
+    /// `g` times the derivative by the first operand, where the value is `v`.
+    #[inline(always)]
+    pub(crate) fn pull_a<F: Float>(self, g: F, a: F, b: F, _v: F) -> F {
+        match self {
+            Self::Add | Self::Sub => g,
+            Self::Mul => g * b,
+            Self::Div => g / b,
+            Self::Min => select(b < a, F::ZERO, g),
+            Self::Max => select(b > a, F::ZERO, g),
+        }
+    }
+
+    /// `g` times the derivative by the second operand, where the value is `v`.
+    #[inline(always)]
+    pub(crate) fn pull_b<F: Float>(self, g: F, a: F, b: F, v: F) -> F {
+        match self {
+            Self::Add => g,
+            Self::Sub => -g,
+            Self::Mul => g * a,
+            Self::Div => -(g * v / b),
+            Self::Min => select(b < a, g, F::ZERO),
+            Self::Max => select(b > a, g, F::ZERO),
+        }
+    }
+}
+
+#[inline(always)]
+fn select<F: Float>(choice: bool, yes: F, no: F) -> F {
+    if choice { yes } else { no }
+}
+
+/// Runs `$body` with `$OP` a constant, so that the match on the operation happens outside of the loop over rows.
+macro_rules! with_unary {
+    ($op:expr, $OP:ident => $body:expr) => {
+        with_unary!(@ $op, $OP => $body; Neg Exp Ln Sqrt Sin Cos Tanh Abs Sigmoid)
+    };
+    (@ $op:expr, $OP:ident => $body:expr; $($name:ident)*) => {
+        match $op {
+            $(Unary::$name => { const $OP: Unary = Unary::$name; $body })*
+        }
+    };
+}
+
+/// As [`with_unary`], for two operands.
+macro_rules! with_binary {
+    ($op:expr, $OP:ident => $body:expr) => {
+        with_binary!(@ $op, $OP => $body; Add Sub Mul Div Min Max)
+    };
+    (@ $op:expr, $OP:ident => $body:expr; $($name:ident)*) => {
+        match $op {
+            $(Binary::$name => { const $OP: Binary = Binary::$name; $body })*
+        }
+    };
+}
+
+pub(crate) use {with_binary, with_unary};

@@ -1,0 +1,102 @@
+//! The trained robot where it has to work.
+
+use std::sync::Arc;
+
+use hwasp_core::{Actor, EnvSpec, HardwarePolicy};
+use hwasp_diff::Activation;
+use hwasp_training::spec::Spec;
+use hwasp_training::{AssembleError, Assembly, World};
+
+/// Rows in which [`Deployed::act`] works.
+const BLOCK: usize = 64;
+
+/// The deterministic controller on the design as built: what `hwasp eval` evaluates. It is the same for all methods, for
+/// nothing of the design is left to move: where the design was in the graph or in the action, it is fixed now.
+pub(super) struct Deployed {
+    pub(super) spec: Spec,
+    pub(super) world: World,
+    pub(super) env: EnvSpec,
+    pub(super) policy: Arc<HardwarePolicy>,
+    /// The controller's parameters.
+    pub(super) params: Vec<f32>,
+    /// SI, as built.
+    pub(super) design: Vec<f64>,
+}
+
+/// One layer of the controller.
+pub(super) struct Layer<'a> {
+    pub(super) inputs: usize,
+    pub(super) outputs: usize,
+    /// `[inputs × outputs]`.
+    pub(super) weight: &'a [f32],
+    pub(super) bias: &'a [f32],
+    pub(super) activation: Activation,
+}
+
+impl Deployed {
+    pub(super) fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
+        let world = assembly.problem.deployment.clone();
+        let design = assembly.problem.training.law.as_built(&assembly.policy.design(params));
+        Ok(Self {
+            spec: assembly.spec().clone(),
+            env: world.make.make(None).spec().clone(),
+            policy: Arc::new(assembly.deployed(&design)?),
+            params: assembly.policy.controller_params(params).to_vec(),
+            world,
+            design,
+        })
+    }
+
+    /// What the last layer does to its sums.
+    pub(super) fn output_activation(&self) -> Activation {
+        if self.policy.spec().squash { Activation::Tanh } else { Activation::Identity }
+    }
+
+    /// The controller's layers, first to last.
+    pub(super) fn layers(&self) -> Vec<Layer<'_>> {
+        let sizes = self.policy.controller().sizes();
+        let (hidden, last) = (self.policy.spec().activation, sizes.len() - 2);
+        let mut rest = &self.params[..];
+        let mut layers = Vec::new();
+        for (l, size) in sizes.windows(2).enumerate() {
+            let (weight, after) = rest.split_at(size[0] * size[1]);
+            let (bias, after) = after.split_at(size[1]);
+            let activation = if l == last { self.output_activation() } else { hidden };
+            layers.push(Layer { inputs: size[0], outputs: size[1], weight, bias, activation });
+            rest = after;
+        }
+        layers
+    }
+
+    /// What the program itself does at these observations and states, rows one after the other: commands within the motors'
+    /// limits, and the law's efforts.
+    pub(super) fn act(&self, observations: &[f32], states: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (seen, state_dim) = (self.env.observation.len(), self.env.state.len());
+        let mut actor = Actor::new(&self.policy, &self.params, 1.0, BLOCK);
+        let (mut commands, mut efforts) = (Vec::new(), Vec::new());
+        let mut inputs = vec![0.0_f32; BLOCK * seen];
+        let mut columns = vec![0.0; BLOCK * state_dim];
+        let mut effort = vec![0.0; self.env.effort.len()];
+        for (observations, states) in observations.chunks(BLOCK * seen).zip(states.chunks(BLOCK * state_dim)) {
+            let rows = observations.len() / seen;
+            for (seen, input) in observations.chunks_exact(seen).zip(inputs.chunks_exact_mut(seen)) {
+                let seen: Vec<f64> = seen.iter().map(|&x| f64::from(x)).collect();
+                self.policy.normalize(&seen, input);
+            }
+            for (r, state) in states.chunks_exact(state_dim).enumerate() {
+                for (s, &x) in state.iter().enumerate() {
+                    columns[s * BLOCK + r] = x;
+                }
+            }
+            actor.act(&inputs[..rows * seen], &columns, rows, None);
+            for (r, state) in states.chunks_exact(state_dim).enumerate() {
+                let limited = actor.action(r).iter().zip(&self.env.command).map(|(c, port)| c.clamp(port.lo, port.hi));
+                let at = commands.len();
+                commands.extend(limited);
+                self.world.law.effort(&self.design, &commands[at..], state, &mut effort);
+                efforts.extend_from_slice(&effort);
+            }
+        }
+        (commands, efforts)
+    }
+}

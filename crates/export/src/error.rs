@@ -1,0 +1,55 @@
+//! Why there is no export.
+
+use std::path::PathBuf;
+
+use hwasp_core::RolloutError;
+use hwasp_runs::RunError;
+use hwasp_tasks::hand::HandError;
+use hwasp_training::AssembleError;
+use thiserror::Error;
+
+/// Why there is no export.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The run folder.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A file of the export that cannot be written.
+    #[error(transparent)]
+    Write(RunError),
+    /// The trained controller does not fit the hardware as built.
+    #[error(transparent)]
+    Assemble(#[from] AssembleError),
+    /// No episode from which states could be taken for samples.
+    #[error(transparent)]
+    Rollout(#[from] RolloutError),
+    /// A form of the mechanism of a run without one.
+    #[error(
+        "{problem} has no mechanism to write as {kind}: mjcf, urdf, stl and scad are for the hand, in z-grasp and 3d-grasp"
+    )]
+    NoMechanism {
+        /// The form.
+        kind: &'static str,
+        /// The problem.
+        problem: &'static str,
+    },
+    /// A hand that cannot be built.
+    #[error(transparent)]
+    Hand(#[from] HandError),
+    /// Something else is where a file should go.
+    #[error("{path} exists already, no export wrote it, and it is not overwritten; name another folder with --out")]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The folder belongs to another run.
+    #[error("{path} has the export of {there}, and this would be {this}; name another folder with --out")]
+    OtherRun {
+        /// The folder.
+        path: PathBuf,
+        /// The run whose export is there: experiment, method and seed.
+        there: String,
+        /// The run asked for.
+        this: String,
+    },
+}

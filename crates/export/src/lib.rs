@@ -1,0 +1,27 @@
+//! From a run to a robot on the bench: what a run comes to, in files that other programs read.
+//!
+//! A [`Kind`] is what can be asked for; it gives named files, and [`export`] alone writes them. A new kind is a variant of
+//! [`Kind`] with a function from [`Source`] to files.
+
+#![forbid(unsafe_code)]
+
+mod contract;
+mod controller;
+mod deployed;
+mod error;
+mod export;
+mod file;
+mod folder;
+mod kind;
+mod meaning;
+mod mechanism;
+mod model;
+mod onnx;
+mod samples;
+mod source;
+
+pub use error::ExportError;
+pub use export::{MOST_SAMPLES, export};
+pub use file::ExportFile;
+pub use kind::Kind;
+pub use source::Source;

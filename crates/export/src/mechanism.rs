@@ -1,0 +1,59 @@
+//! The mechanism of a hand with the design of a run: as a simulation, as links and joints, and as parts to print.
+//!
+//! Of a finished run `experiment.toml` and `design.toml` are enough; neither the engine nor the policy is asked.
+
+use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, HandError, MjcfOptions, Stock, mjcf, parts, scad, urdf};
+use hwasp_training::spec::{Problem, Spec};
+
+use crate::file::ExportFile;
+
+/// The hand that an experiment is about, if it is about one: everything about it that is not designed.
+pub(super) fn hand(spec: &Spec) -> Option<HandDescription> {
+    match &spec.task.problem {
+        Problem::ZGrasp(problem) | Problem::SpatialGrasp(problem) => Some(problem.hand()),
+        _ => None,
+    }
+}
+
+/// A hand and its design, SI.
+pub(super) struct Mechanism {
+    hand: HandDescription,
+    design: [f64; DESIGN_LEN],
+}
+
+impl Mechanism {
+    /// Of the twelve parameters as built, SI.
+    pub(super) fn new(hand: HandDescription, design: &[f64]) -> Self {
+        Self { hand, design: std::array::from_fn(|i| design[i]) }
+    }
+
+    /// The scene of the task with MuJoCo's own tendons and springs.
+    pub(super) fn mjcf(&self) -> Result<Vec<ExportFile>, HandError> {
+        let drive = Drive::NativeTendon { design: self.design };
+        Ok(vec![text("hand.xml", mjcf(&self.hand, &MjcfOptions { drive, ..MjcfOptions::default() })?)])
+    }
+
+    /// Links and joints.
+    pub(super) fn urdf(&self) -> Result<Vec<ExportFile>, HandError> {
+        Ok(vec![text("hand.urdf", urdf(&self.hand, &self.design)?)])
+    }
+
+    /// The parts.
+    pub(super) fn stl(&self) -> Result<Vec<ExportFile>, HandError> {
+        let parts = parts(&self.hand, &self.design, &Stock::default())?;
+        let file = |part: hwasp_tasks::hand::Part| ExportFile {
+            name: format!("{}.stl", part.name),
+            contents: part.mesh.stl(part.name),
+        };
+        Ok(parts.into_iter().map(file).collect())
+    }
+
+    /// The parts with their parameters.
+    pub(super) fn scad(&self) -> Result<Vec<ExportFile>, HandError> {
+        Ok(vec![text("hand.scad", scad(&self.hand, &self.design, &Stock::default())?)])
+    }
+}
+
+fn text(name: &str, contents: String) -> ExportFile {
+    ExportFile { name: name.to_owned(), contents: contents.into_bytes() }
+}

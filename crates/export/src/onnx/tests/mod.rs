@@ -1,0 +1,184 @@
+//! Models as they were written, read back and run by an interpreter of their operators, against the program itself.
+#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+
+mod runtime;
+
+use std::collections::BTreeSet;
+
+use hwasp_core::{Policy, Purpose, Stream, stream};
+use hwasp_diff::{Program, Scalar};
+use hwasp_training::{Assembly, spec};
+use prost::Message;
+use rand::RngExt;
+
+use self::runtime::{Tensor, run};
+use super::graph::Graph;
+use super::law::{Value, law};
+use super::proto::{DOUBLE, FLOAT, ModelProto};
+use super::{ElementType, models};
+use crate::contract::Contract;
+use crate::deployed::Deployed;
+
+/// How far apart answers may be: some units in the last place of single precision.
+const MOST: f64 = 2e-6;
+
+/// An experiment with parameters drawn at random, so that every one of them counts.
+fn deployed(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Deployed {
+    let layers = spec::load(experiment).unwrap();
+    let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
+    let assembly = Assembly::new(&spec::resolve(layers, Some(method)).unwrap()).unwrap();
+    let mut random = stream(5, Purpose::Samples, 0, 0);
+    let inputs = assembly.policy.obs_dim();
+    let mut params: Vec<f32> = (0..assembly.policy.param_count()).map(|_| random.random_range(-0.3..0.3)).collect();
+    // Weights of the first layer as large as make the units turn.
+    params[..inputs].iter_mut().for_each(|weight| *weight *= 5.0);
+    Deployed::new(&assembly, &params).unwrap()
+}
+
+/// The models of it, read back.
+fn written(deployed: &Deployed) -> [ModelProto; 2] {
+    let files = models(deployed, &Contract::new(deployed)).unwrap();
+    [&files[0], &files[1]].map(|file| ModelProto::decode(&file.contents[..]).unwrap())
+}
+
+/// Observations around the centre, and states of any size.
+fn inputs(deployed: &Deployed, rows: usize) -> (Vec<f32>, Vec<f64>) {
+    let random = &mut stream(6, Purpose::Samples, 0, 0);
+    let policy = deployed.policy.spec();
+    let scaling: Vec<_> = policy.observation_center.iter().zip(&policy.observation_scale).collect();
+    let draw = |random: &mut Stream| random.random_range(-3.0..3.0);
+    let observations = (0..rows).flat_map(|_| {
+        let row: Vec<f32> = scaling.iter().map(|&(center, scale)| (center + scale * draw(random)) as f32).collect();
+        row
+    });
+    let observations = observations.collect();
+    let states = (0..rows * deployed.env.state.len()).map(|_| 0.05 * draw(random)).collect();
+    (observations, states)
+}
+
+/// The largest difference, as a share of `size`.
+fn apart(given: &Tensor, wanted: &[f64], size: impl Fn(usize) -> f64) -> f64 {
+    assert_eq!(given.data.len(), wanted.len());
+    let difference = |(i, (a, b)): (usize, (&f64, &f64))| (a - b).abs() / size(i);
+    given.data.iter().zip(wanted).enumerate().map(difference).fold(0.0, f64::max)
+}
+
+/// Both models of an experiment do what the program does.
+fn agree(experiment: &str, method: &str, settings: &[(&str, &str)]) {
+    let deployed = deployed(experiment, method, settings);
+    let rows = 150; // two whole blocks and a part of one
+    let (observations, states) = inputs(&deployed, rows);
+    let (commands, efforts) = deployed.act(&observations, &states);
+    let wide = |values: &[f32]| values.iter().map(|&x| f64::from(x)).collect::<Vec<f64>>();
+    let tensor = |kind, data: Vec<f64>| Tensor { kind, dims: vec![rows, data.len() / rows], data };
+    let ports = &deployed.env.command;
+    let range = |i: usize| ports[i % ports.len()].hi - ports[i % ports.len()].lo;
+    let [alone, whole] = written(&deployed);
+
+    let out = run(&alone, &[("observation", tensor(FLOAT, wide(&observations)))]);
+    assert_eq!((out.len(), out["command"].kind), (1, FLOAT));
+    let off = apart(&out["command"], &commands, range);
+    assert!(off < MOST, "{experiment} {method}: the controller is off by {off} of the motors' range");
+
+    let both = [("observation", tensor(DOUBLE, wide(&observations))), ("state", tensor(DOUBLE, states))];
+    let out = run(&whole, &both);
+    assert_eq!((out.len(), out["command"].kind, out["effort"].kind), (2, DOUBLE, DOUBLE));
+    let off = apart(&out["command"], &commands, range);
+    assert!(off < MOST, "{experiment} {method}: the policy's command is off by {off} of the motors' range");
+    let largest = efforts.iter().fold(0.0_f64, |most, effort| most.max(effort.abs()));
+    let off = apart(&out["effort"], &efforts, |_| largest);
+    assert!(off < MOST, "{experiment} {method}: the effort is off by {off} of its largest");
+    // It is about something: commands differ.
+    let distinct: BTreeSet<u64> = commands.iter().map(|c| c.to_bits()).collect();
+    assert!(distinct.len() > rows / 2, "{experiment}: only {} different commands", distinct.len());
+}
+
+#[test]
+fn springs_in_the_graph_in_the_action_and_fixed() {
+    for method in ["hwasp", "minimal", "fixed"] {
+        agree("mass-spring", method, &[]);
+    }
+}
+
+/// Whose effort, a length, is the same whatever is commanded.
+#[test]
+fn a_rigid_bar() {
+    agree("bar-length", "hwasp", &[]);
+    agree("bar-length", "minimal", &[("task.segments", "1")]);
+}
+
+#[test]
+fn gears() {
+    agree("pendulum", "hwasp", &[]);
+    agree("reach", "cmaes", &[]);
+}
+
+#[test]
+fn networks_of_every_kind() {
+    let wide = ("controller.output_gain", "1");
+    agree("mass-spring", "hwasp", &[("controller.activation", "relu"), ("controller.squash", "false"), wide]);
+    agree("mass-spring", "hwasp", &[("controller.hidden", "[]"), ("controller.squash", "true")]);
+    agree("mass-spring", "hwasp", &[("controller.hidden", "[7, 5, 3]"), ("controller.squash", "true")]);
+}
+
+#[cfg(feature = "mujoco")]
+#[test]
+fn hands() {
+    for experiment in ["z-grasp", "3d-grasp"] {
+        for method in ["hwasp", "minimal"] {
+            agree(experiment, method, &[]);
+        }
+    }
+}
+
+#[test]
+fn what_a_model_says_of_itself() {
+    let deployed = deployed("pendulum", "hwasp", &[]);
+    let [alone, whole] = written(&deployed);
+    assert_eq!((alone.ir_version, alone.opset_import[0].version), (8, 17));
+    let contract: serde_json::Value = serde_json::from_str(&alone.metadata_props[0].value).unwrap();
+    assert_eq!((&contract["task"], &contract["control"]["rate_hz"]), (&"pendulum".into(), &20.0.into()));
+    let graph = whole.graph.unwrap();
+    let doc: Vec<_> = graph.input.iter().chain(&graph.output).map(|value| value.doc_string.as_str()).collect();
+    assert_eq!(
+        doc,
+        ["cos, sin, speed (rad/s)", "angle (rad), speed (rad/s)", "motor (N·m) in [-2, 2]", "torque (N·m)"]
+    );
+    // The design can be found, and changed, by its name.
+    let gear = graph.initializer.iter().find(|tensor| tensor.name == "design.gear").unwrap();
+    assert_eq!((gear.dims.len(), gear.raw_data.as_slice()), (0, &deployed.design[0].to_le_bytes()[..]));
+}
+
+/// Every operation of a traced law, against the same law on plain numbers.
+#[test]
+fn every_operation_of_a_law() {
+    fn arithmetic<T: Scalar>(u: &[T], c: &[T]) -> Vec<T> {
+        let (a, b) = (c[0], c[1]);
+        vec![
+            -a + b.exp() - (a.abs() + 1.0).ln(),
+            (b.abs() + u[0]).sqrt() * a.sin() / (b.cos() + 3.0),
+            (a * b).tanh().min(b.sigmoid()).max(a * 0.1),
+            u[0].exp() + u[0],
+        ]
+    }
+    let names = ["p", "q", "r", "s"].map(str::to_owned);
+    let program = Program::trace(&["u"], &["a", "b"], |u, c| names.iter().cloned().zip(arithmetic(u, c)).collect());
+    let deployed = deployed("reach", "hwasp", &[]);
+    let mut graph = Graph::new("law", &Contract::new(&deployed).models.policy);
+    graph.0.output.clear();
+    graph.numbers("u", &[], &[0.7], ElementType::Float64);
+    let value = |name: &str, by_row| Value { name: name.to_owned(), by_row };
+    let outputs = law(&mut graph, &program, &[value("u", false)], &[value("a", true), value("b", true)]);
+    assert_eq!(outputs.iter().map(|o| o.by_row).collect::<Vec<_>>(), [true, true, true, false]);
+    let (a, b) = ([0.3, -2.0, 0.0, 1.5], [-1.2, 0.4, 5.0, -0.1]);
+    let column = |data: [f64; 4]| Tensor { kind: DOUBLE, dims: vec![4, 1], data: data.to_vec() };
+    let values = runtime::values(&graph.0, &[("a", column(a)), ("b", column(b))]);
+    for (r, (&a, &b)) in a.iter().zip(&b).enumerate() {
+        for (output, wanted) in outputs.iter().zip(arithmetic(&[0.7], &[a, b])) {
+            let given = &values[&output.name].data;
+            assert_eq!(given[if output.by_row { r } else { 0 }], wanted, "{} at {a}, {b}", output.name);
+        }
+    }
+    let ops: BTreeSet<&str> = graph.0.node.iter().map(|node| node.op_type.as_str()).collect();
+    assert_eq!(ops.len(), 15, "{ops:?}");
+}

@@ -1,0 +1,71 @@
+//! Runs to export from.
+
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+
+use hwasp_runs::{DESIGN, RunError, SavedRun, saved_spec};
+use hwasp_training::spec::Spec;
+use hwasp_workshop::design::DesignReport;
+
+use crate::contract::Contract;
+use crate::deployed::Deployed;
+use crate::error::ExportError;
+use crate::file::ExportFile;
+use crate::kind::Kind;
+use crate::mechanism::{self, Mechanism};
+
+/// A run to export from. What a kind does not need is not read: the experiment is there at once, the trained policy when it
+/// is asked for.
+pub struct Source {
+    path: PathBuf,
+    spec: Spec,
+    deployed: OnceCell<Deployed>,
+}
+
+impl Source {
+    /// Opens a run folder.
+    pub fn open(path: &Path) -> Result<Self, RunError> {
+        Ok(Self { path: path.to_owned(), spec: saved_spec(path, &[])?, deployed: OnceCell::new() })
+    }
+
+    /// Its experiment.
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// The trained controller on the hardware as built.
+    pub(crate) fn deployed(&self) -> Result<&Deployed, ExportError> {
+        if let Some(deployed) = self.deployed.get() {
+            return Ok(deployed);
+        }
+        let saved = SavedRun::open(&self.path)?;
+        let params = saved.params()?;
+        let deployed = Deployed::new(saved.assembly(), &params)?;
+        Ok(self.deployed.get_or_init(|| deployed))
+    }
+
+    /// Files of the controller, and its contract.
+    pub(crate) fn with_contract(
+        &self,
+        make: impl FnOnce(&Deployed, &Contract) -> Result<Vec<ExportFile>, ExportError>,
+    ) -> Result<Vec<ExportFile>, ExportError> {
+        let deployed = self.deployed()?;
+        let contract = Contract::new(deployed);
+        let mut files = make(deployed, &contract)?;
+        files.push(contract.file()?);
+        Ok(files)
+    }
+
+    /// The mechanism, to be written as `kind`.
+    pub(crate) fn mechanism(&self, kind: Kind) -> Result<Mechanism, ExportError> {
+        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name() };
+        let hand = mechanism::hand(&self.spec).ok_or_else(none)?;
+        if !self.path.join(DESIGN).is_file() {
+            // Of a training that did not come to its end.
+            return Ok(Mechanism::new(hand, &self.deployed()?.design));
+        }
+        let design: Vec<f64> =
+            DesignReport::open(&self.path)?.groups.into_iter().flat_map(|group| group.group.as_built).collect();
+        Ok(Mechanism::new(hand, &design))
+    }
+}

@@ -1,0 +1,89 @@
+//! Pictures of runs: a panel for the return and one for each design total.
+
+use crate::curve::{Curve, RETURN};
+use crate::error::{LONGEST_WINDOW, MOST_PANELS, MOST_RUNS, PlotError};
+use crate::options::{PanelText, PlotOptions};
+use crate::picture::{PanelPlots, Plot};
+use crate::series::{self, Note};
+use crate::{draw, panel};
+
+/// Draws the runs: one panel for the discounted return and one for each design total, one colour per label.
+pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> {
+    let Drawn { panels, entries, explanation, notes } = Drawn::new(runs, options)?;
+    let page = draw::Page { title: &options.title, untitled: "learning curves", explanation, ..draw::Page::default() };
+    Ok(Plot { svg: draw::picture(&panels, &entries, &page), notes })
+}
+
+/// Draws the same panels, each as a small picture of its own without a title; with a legend where there are several labels.
+pub fn curve_panels(runs: &[Curve], options: &PlotOptions) -> Result<PanelPlots, PlotError> {
+    let Drawn { panels, mut entries, explanation, notes } = Drawn::new(runs, options)?;
+    if entries.len() == 1 {
+        entries.clear();
+    }
+    Ok(PanelPlots { panels: draw::one_by_one(panels, &entries, draw::Page::default().reference), explanation, notes })
+}
+
+/// What is to be drawn.
+struct Drawn<'r> {
+    panels: Vec<panel::Panel>,
+    entries: Vec<draw::Entry<'r>>,
+    explanation: String,
+    notes: Vec<Note>,
+}
+
+impl<'r> Drawn<'r> {
+    fn new(runs: &'r [Curve], options: &PlotOptions) -> Result<Self, PlotError> {
+        if runs.is_empty() {
+            return Err(PlotError::NoRuns);
+        }
+        if runs.len() > MOST_RUNS {
+            return Err(PlotError::Runs(runs.len()));
+        }
+        if !(1..=LONGEST_WINDOW).contains(&options.window) {
+            return Err(PlotError::Window(options.window));
+        }
+        // Labels and columns in the order in which they are first seen.
+        let mut groups: Vec<Vec<&Curve>> = Vec::new();
+        let mut columns = vec![RETURN];
+        for run in runs {
+            match groups.iter_mut().find(|group| group[0].label == run.label) {
+                Some(group) => group.push(run),
+                None => groups.push(vec![run]),
+            }
+            for (name, _) in &run.totals {
+                if !columns.contains(&name.as_str()) {
+                    columns.push(name);
+                }
+            }
+        }
+        if columns.len() > MOST_PANELS {
+            return Err(PlotError::Panels(columns.len()));
+        }
+        let mut notes = Vec::new();
+        let mut panels = Vec::new();
+        for column in columns {
+            let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));
+            panels.push(panel::Panel::new(
+                text_of(column, options),
+                options.x_axis.label(),
+                shapes.collect::<Result<_, _>>()?,
+            ));
+        }
+        let entry =
+            |(place, group): (usize, &Vec<&'r Curve>)| draw::Entry { place, label: &group[0].label, runs: group.len() };
+        let explanation = draw::explanation(&panels, options);
+        Ok(Self { panels, entries: groups.iter().enumerate().map(entry).collect(), explanation, notes })
+    }
+}
+
+/// The panel's text: as given, or the column's own name without underscores.
+fn text_of(column: &str, options: &PlotOptions) -> PanelText {
+    let given = options.panels.iter().find(|panel| panel.column == column).cloned();
+    let mut text = given.unwrap_or_default();
+    if text.label.is_empty() {
+        text.label = column.replace('_', " ");
+    }
+    // An optimum that is no number, or dwarfs everything, is no line.
+    text.optimum = text.optimum.filter(|value| value.abs() <= series::LARGEST);
+    text
+}

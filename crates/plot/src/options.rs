@@ -1,0 +1,56 @@
+//! How a picture is drawn.
+
+use crate::curve::XAxis;
+
+/// What a panel's vertical axis says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PanelText {
+    /// The column it is about: [`RETURN`](crate::RETURN) or a design total's name.
+    pub column: String,
+    /// What is measured, such as `total stiffness`.
+    pub label: String,
+    /// The symbol of the unit to draw it in, such as `N/m` or `mm`; empty for a pure number. Values are brought to it from
+    /// SI; one that is not known is taken for SI.
+    pub unit: String,
+    /// A known optimum, SI, drawn as a dashed line.
+    pub optimum: Option<f64>,
+}
+
+/// What the band around several runs spans.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Band {
+    /// The smallest to the largest run.
+    #[default]
+    MinMax,
+    /// The 95 % bootstrap interval of the interquartile mean.
+    Bootstrap,
+}
+
+/// How a picture is drawn.
+///
+/// | option | default | what it does | range |
+/// |---|---|---|---|
+/// | `title` | none | the line above everything | any text |
+/// | `x_axis` | `EnvSteps` | what the curves are drawn against; their `x` has to be that | - |
+/// | `window` | 11 | rows in the trailing mean of the return | 1 to 1001 |
+/// | `band` | `MinMax` | the band around several runs | - |
+/// | `panels` | none | axis texts and optima by column; a column without gets its own name | - |
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlotOptions {
+    /// The line above everything; empty for none.
+    pub title: String,
+    /// What the curves are drawn against.
+    pub x_axis: XAxis,
+    /// Rows in the trailing mean of the return.
+    pub window: usize,
+    /// The band around several runs.
+    pub band: Band,
+    /// Axis texts and optima by column.
+    pub panels: Vec<PanelText>,
+}
+
+impl Default for PlotOptions {
+    fn default() -> Self {
+        Self { title: String::new(), x_axis: XAxis::EnvSteps, window: 11, band: Band::MinMax, panels: Vec::new() }
+    }
+}

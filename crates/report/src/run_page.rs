@@ -1,0 +1,46 @@
+//! The report of one run, section by section.
+
+use hwasp_runs::text::{Shown, grouped};
+use hwasp_runs::{RunError, Summary};
+
+use crate::page::{KeyFigure, Page};
+use crate::run::Run;
+use crate::sections::{curves, design, hand, law, outcome, overview, parts, provenance, tolerances};
+use crate::words::{decimal, duration, mean_interval, percent, rate_interval};
+use crate::{episode, words};
+
+/// The report.
+pub(crate) fn page(run: &Run) -> Result<Page, RunError> {
+    let mut sections = vec![overview::section(run), episode::section(run)?, outcome::section(run)];
+    sections.extend([curves::section(run), design::section(run)]);
+    if let Some(hand) = &run.design.hand {
+        sections.extend([hand::section(hand), parts::section(run)]);
+    }
+    sections.extend([tolerances::section(run), law::section(run), provenance::section(run)]);
+    let (kind, lead) = ("Run", run.spec.description.clone());
+    Ok(Page { title: run.title(), kind, lead, figures: key_figures(run), sections })
+}
+
+fn key_figures(run: &Run) -> Vec<KeyFigure> {
+    let Summary { evaluation, env_steps, wall_s, .. } = &run.summary;
+    let figure = |label: &str, value: String, note: String| KeyFigure { label: label.into(), value, note };
+    let mut figures = Vec::new();
+    if let Some(all) = evaluation.success.first() {
+        let of = format!("{} of {}; 95 % interval {}", all.successes, all.episodes, rate_interval(all));
+        figures.push(figure("Success", percent(all.rate()), of));
+    }
+    for group in run.design.groups.iter().filter(|group| group.group.optimum.is_some()) {
+        let shown = Shown::of(&group.group);
+        let best = group.group.optimum.map_or(String::new(), |best| format!("best known {}", shown.with_unit(best)));
+        let label = if group.position.len() == 1 { String::new() } else { "Total ".to_owned() };
+        let label = label + &words::spaced(&group.name);
+        figures.push(figure(&label, shown.with_unit(group.group.total_as_built), best));
+    }
+    let interval = format!("95 % interval {}", mean_interval(&evaluation.discounted_return, 1));
+    figures.push(figure("Discounted return", decimal(evaluation.discounted_return.mean, 1), interval));
+    let parameters: usize = run.design.groups.iter().map(|group| group.position.len()).sum();
+    let of = if parameters == 1 { "number of the body" } else { "numbers of the body" };
+    figures.push(figure("Designed", parameters.to_string(), of.into()));
+    figures.push(figure("Simulator steps", grouped(*env_steps), format!("in {}", duration(*wall_s))));
+    figures
+}

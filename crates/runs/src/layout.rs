@@ -1,0 +1,19 @@
+//! The files of a run folder, by name.
+
+/// Where it came from.
+pub(crate) const PROVENANCE: &str = "provenance.json";
+/// Its learning curve.
+pub(crate) const METRICS: &str = "metrics.csv";
+/// Its design.
+pub const DESIGN: &str = "design.toml";
+/// Its parameters.
+pub(crate) const POLICY: &str = "policy.safetensors";
+/// Checkpoints of a training that is under way, or was.
+pub(crate) const CHECKPOINTS: &str = "checkpoints";
+/// What it takes to see iterations fail again.
+pub(crate) const FAULTS: &str = "faults";
+/// Written last: a folder that has it is finished.
+pub const SUMMARY: &str = "summary.json";
+
+/// The largest summary that is read, bytes: ten thousand parameters take less than one.
+pub const LARGEST_SUMMARY: u64 = 16 << 20;

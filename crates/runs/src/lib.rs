@@ -1,0 +1,29 @@
+//! Runs: folders with everything about one training, checkpoints that it goes on from, what is read back of them.
+
+#![forbid(unsafe_code)]
+
+pub mod checkpoint;
+mod error;
+pub mod files;
+mod layout;
+pub mod metrics;
+mod policy_file;
+mod replay;
+mod run_folder;
+mod store;
+mod summary;
+mod tensorboard;
+pub mod tensors;
+pub mod text;
+
+pub use error::{RunError, encode, io_error};
+pub use layout::{DESIGN, LARGEST_SUMMARY, SUMMARY};
+pub use policy_file::{PolicyFileError, read_policy, write_policy};
+pub use replay::{Replay, ReplayError, replay};
+pub use run_folder::{
+    Extras, Keeping, Provenance, Resumed, RunFolder, SavedRun, no_extras, saved_json, saved_metrics, saved_provenance,
+    saved_spec, saved_summary,
+};
+pub use store::{CheckpointStore, Found};
+pub use summary::{DesignGroupSummary, Summary};
+pub use tensorboard::{TensorBoard, TensorBoardError};

@@ -1,0 +1,11 @@
+//! Run folders: everything about one training, in files that explain themselves.
+
+mod lock;
+mod provenance;
+mod saved;
+mod table;
+mod writer;
+
+pub use self::provenance::Provenance;
+pub use self::saved::{SavedRun, saved_json, saved_metrics, saved_provenance, saved_spec, saved_summary};
+pub use self::writer::{Extras, Keeping, Resumed, RunFolder, no_extras};

@@ -1,0 +1,118 @@
+//! Run folders read back.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use hwasp_training::spec::{self, EXPERIMENT, Layers, Spec};
+use hwasp_training::{Assembly, params_at};
+use serde::de::DeserializeOwned;
+
+use super::Provenance;
+use crate::checkpoint::experiment_hash;
+use crate::error::{RunError, encode, io_error};
+use crate::files::{Disk, read_limited};
+use crate::layout::{LARGEST_SUMMARY, METRICS, POLICY, PROVENANCE, SUMMARY};
+use crate::metrics::MetricsTable;
+use crate::policy_file::{LARGEST_POLICY, read_policy};
+use crate::store::CheckpointStore;
+use crate::summary::Summary;
+
+/// A run that was written before.
+pub struct SavedRun {
+    path: PathBuf,
+    assembly: Assembly,
+}
+
+impl SavedRun {
+    /// Opens a run folder and puts its experiment together again.
+    pub fn open(path: &Path) -> Result<Self, RunError> {
+        Self::open_with(path, &[])
+    }
+
+    /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
+    pub fn open_with(path: &Path, assignments: &[String]) -> Result<Self, RunError> {
+        let spec = saved_spec(path, assignments)?;
+        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&spec)? })
+    }
+
+    /// Its experiment, ready to run.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// The trained parameters; those of the newest checkpoint where the training did not come to its end.
+    pub fn params(&self) -> Result<Vec<f32>, RunError> {
+        let path = self.path.join(POLICY);
+        if !path.is_file() {
+            return self.params_so_far();
+        }
+        let bytes = read_limited(&path, LARGEST_POLICY)?;
+        read_policy(&self.assembly.policy, &bytes).map_err(|source| RunError::Policy { path, source })
+    }
+
+    fn params_so_far(&self) -> Result<Vec<f32>, RunError> {
+        let experiment = self.assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+        let store = CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment));
+        let found = store.newest()?;
+        found.warn();
+        let unfinished = || RunError::Unfinished { path: self.path.clone(), file: POLICY };
+        let checkpoint = found.checkpoint.ok_or_else(unfinished)?;
+        let steps = checkpoint.env_steps;
+        tracing::warn!("{} did not come to its end: this is what it was after {steps} steps", self.path.display());
+        params_at(&self.assembly, &checkpoint)
+            .map_err(|source| RunError::State { path: self.path.clone(), source: Box::new(source) })
+    }
+
+    /// Its figures.
+    pub fn summary(&self) -> Result<Summary, RunError> {
+        saved_summary(&self.path)
+    }
+
+    /// Its learning curve as a table.
+    pub fn metrics(&self) -> Result<MetricsTable, RunError> {
+        saved_metrics(&self.path)
+    }
+}
+
+/// The experiment of a run folder, with values of it set anew (`key=value`).
+pub fn saved_spec(path: &Path, assignments: &[String]) -> Result<Spec, RunError> {
+    let file = path.join(EXPERIMENT);
+    if !file.is_file() {
+        return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
+    }
+    let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
+    let text = String::from_utf8_lossy(&text);
+    let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
+    let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
+    Ok(spec::resolve(layers, None)?)
+}
+
+/// The figures of a run folder.
+pub fn saved_summary(run: &Path) -> Result<Summary, RunError> {
+    let summary = saved_json(&run.join(SUMMARY))?;
+    summary.ok_or_else(|| RunError::Unfinished { path: run.to_owned(), file: SUMMARY })
+}
+
+/// The learning curve of a run folder.
+pub fn saved_metrics(run: &Path) -> Result<MetricsTable, RunError> {
+    let path = run.join(METRICS);
+    let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
+    MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
+}
+
+/// Where a run came from, if its folder says so.
+pub fn saved_provenance(run: &Path) -> Result<Option<Provenance>, RunError> {
+    saved_json(&run.join(PROVENANCE))
+}
+
+/// What a file holds as JSON; none where there is no such file.
+pub fn saved_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunError> {
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let bytes = read_limited(path, LARGEST_SUMMARY)?;
+    let decode = |e: serde_json::Error| RunError::Decode { path: path.to_owned(), message: e.to_string() };
+    serde_json::from_slice(&bytes).map(Some).map_err(decode)
+}

@@ -1,0 +1,109 @@
+//! The figures of a finished run, as `summary.json` and `design.toml` hold them.
+
+use std::collections::BTreeMap;
+
+use hwasp_training::{Assembly, Evaluation, Trained};
+use serde::{Deserialize, Serialize};
+
+/// One group of design parameters, SI.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DesignGroupSummary {
+    /// The SI unit of all values, empty for pure numbers.
+    pub unit: String,
+    /// Limits of each parameter.
+    pub limits: [f64; 2],
+    /// The sum of the values as trained.
+    pub total: f64,
+    /// The sum of the values to build.
+    pub total_as_built: f64,
+    /// The best total as built, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimum: Option<f64>,
+    /// The values as trained.
+    pub values: Vec<f64>,
+    /// The values to build: other than the trained ones only where the law softens an interface.
+    pub as_built: Vec<f64>,
+}
+
+/// A run in figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The experiment.
+    pub experiment: String,
+    /// How learner, policy and hardware were composed.
+    pub method: String,
+    /// The problem.
+    pub task: String,
+    /// The root seed.
+    pub seed: u64,
+    /// Iterations done.
+    pub iterations: u64,
+    /// Real simulator steps of training.
+    pub env_steps: u64,
+    /// Time of training, s.
+    pub wall_s: f64,
+    /// Real simulator steps per second of training, updates included.
+    pub steps_per_s: f64,
+    /// Mean discounted return of the noisy training episodes over the last 11 iterations.
+    pub training_discounted_return: f64,
+    /// The same, undiscounted.
+    pub training_return: f64,
+    /// Candidates of a search that failed and ranked last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_candidates: Option<u64>,
+    /// Episodes whose physics failed.
+    #[serde(default)]
+    pub discarded_episodes: u64,
+    /// The deterministic policy on held-out starts, on the hardware as built.
+    pub evaluation: Evaluation,
+    /// The design.
+    pub design: BTreeMap<String, DesignGroupSummary>,
+}
+
+impl Summary {
+    /// The figures of a training.
+    pub fn new(assembly: &Assembly, trained: &Trained) -> Self {
+        let spec = assembly.spec();
+        Self {
+            experiment: spec.name.clone(),
+            method: spec.method.name().to_owned(),
+            task: spec.task.name().to_owned(),
+            seed: spec.seed,
+            iterations: trained.iterations,
+            env_steps: trained.env_steps,
+            wall_s: trained.wall_s,
+            steps_per_s: trained.env_steps as f64 / trained.wall_s.max(f64::MIN_POSITIVE),
+            training_discounted_return: trained.training_discounted_return,
+            training_return: trained.training_return,
+            failed_candidates: trained.failed_candidates,
+            discarded_episodes: trained.discarded_episodes,
+            evaluation: trained.evaluation.clone(),
+            design: design_summary(assembly, &trained.params),
+        }
+    }
+}
+
+/// The design in `params`, by group.
+fn design_summary(assembly: &Assembly, params: &[f32]) -> BTreeMap<String, DesignGroupSummary> {
+    let policy = &assembly.policy;
+    let design = policy.design(params);
+    let built = assembly.problem.training.law.as_built(&design);
+    let mut at = 0;
+    let mut groups = BTreeMap::new();
+    for (group, optimum) in policy.space().groups().iter().zip(&assembly.problem.optimum) {
+        let range = at..at + group.count;
+        at = range.end;
+        let (values, as_built) = (design[range.clone()].to_vec(), built[range].to_vec());
+        let summary = DesignGroupSummary {
+            unit: group.dimension.si().to_owned(),
+            limits: [group.lo, group.hi],
+            total: values.iter().sum(),
+            total_as_built: as_built.iter().sum(),
+            optimum: *optimum,
+            values,
+            as_built,
+        };
+        groups.insert(group.name.clone(), summary);
+    }
+    groups
+}

@@ -1,0 +1,176 @@
+//! `metrics.csv`: every number comes back with its bits, and no file, however hostile, does worse than an error.
+
+#![allow(clippy::unwrap_used)]
+
+use hwasp_runs::metrics::{FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter};
+use hwasp_training::MetricsRow;
+
+fn row(iteration: u64, values: [f64; 8]) -> MetricsRow {
+    MetricsRow {
+        iteration,
+        env_steps: 4000 * (iteration + 1),
+        wall_s: values[0],
+        discounted_return: values[1],
+        undiscounted_return: values[2],
+        kl: values[3],
+        entropy: values[4],
+        step_fraction: values[5],
+        design_totals: values[6..].to_vec(),
+    }
+}
+
+fn written(rows: &[MetricsRow]) -> Vec<u8> {
+    let mut writer = MetricsWriter::new(Vec::new(), &["stiffness_total", "length_total"]).unwrap();
+    for row in rows {
+        writer.append(row).unwrap();
+    }
+    writer.into_inner()
+}
+
+fn header() -> String {
+    format!("{},stiffness_total\n", FIXED_COLUMNS.join(","))
+}
+
+fn read(text: impl AsRef<[u8]>) -> Result<MetricsTable, MetricsError> {
+    MetricsTable::read(text.as_ref())
+}
+
+/// `-NaN` was read with its sign, which is not written.
+#[test]
+fn there_is_but_one_kind_of_unknown() {
+    let table = read(header() + "0,1,-NaN,nan,+NaN,NaN,-nan,0,1\n").unwrap();
+    assert!(bits(&table.rows[0])[..5].iter().all(|&b| b == f64::NAN.to_bits()));
+}
+
+/// The message for a body under a good header.
+fn message(body: &str) -> String {
+    read(header() + body).unwrap_err().to_string()
+}
+
+fn bits(row: &MetricsRow) -> Vec<u64> {
+    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
+    fixed.iter().chain(&row.design_totals).map(|v| v.to_bits()).collect()
+}
+
+#[test]
+fn numbers_come_back_with_their_bits() {
+    let hard = [0.1 + 0.2, -1.0 / 3.0, 1e300, 5e-324, -0.0, f64::MAX, 0.64, 19.6];
+    let odd = [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, f64::MIN, 0.0, 2f64.powi(60)];
+    let rows = [row(0, hard), row(1, odd), row(u64::MAX / 4001 - 2, hard)];
+    let table = read(written(&rows)).unwrap();
+    assert_eq!(table.design_totals, ["stiffness_total", "length_total"]);
+    assert_eq!(table.unfinished_line, None);
+    assert_eq!(table.rows.len(), 3);
+    for (got, expected) in table.rows.iter().zip(&rows) {
+        assert_eq!((got.iteration, got.env_steps), (expected.iteration, expected.env_steps));
+        assert_eq!(bits(got), bits(expected));
+    }
+}
+
+#[test]
+fn the_text_is_plain_and_short() {
+    let text =
+        String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 0.8, 65.5, 1e-9])])).unwrap();
+    assert_eq!(
+        text,
+        "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,stiffness_total,length_total\n\
+         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,65.5,1e-9\n"
+    );
+    assert!(read(text).unwrap().rows[0].kl.is_nan());
+}
+
+#[test]
+fn a_table_can_be_continued() {
+    let names = ["stiffness_total", "length_total"];
+    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 8])]), &names).unwrap();
+    writer.append(&row(1, [1.0; 8])).unwrap();
+    assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 8]), row(1, [1.0; 8])]));
+}
+
+/// A run that was killed in the middle of a row must not lend the plot a number cut short.
+#[test]
+fn an_unfinished_line_is_left_out_and_reported() {
+    let mut text = written(&[row(0, [1.0; 8]), row(1, [12.5; 8])]);
+    text.truncate(text.len() - 2);
+    let table = read(text).unwrap();
+    assert_eq!((table.rows.len(), table.unfinished_line), (1, Some(3)));
+}
+
+#[test]
+fn line_ends_and_marks_of_other_programs_are_read() {
+    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3,4,5,6\r\n", FIXED_COLUMNS.join(","))).unwrap();
+    assert_eq!((table.rows.len(), table.rows[0].entropy), (1, 5.0));
+}
+
+#[test]
+fn faults_are_named_with_their_line() {
+    let good = "0,4000,1,2,3,4,5,6,7\n";
+    assert_eq!(message(&format!("{good}1,8000,1,2\n")), "line 3 has 4 fields, the header has 9");
+    assert_eq!(message("0,4000,1,2,3,4,5,6,7,8\n"), "line 2 has 10 fields, the header has 9");
+    assert_eq!(message("\n"), "line 2 has 1 fields, the header has 9");
+    assert_eq!(message("0,-1,1,2,3,4,5,6,7\n"), "line 2: `-1` in column `env_steps` is not a whole number from 0");
+    assert_eq!(message("0,4000,1,fast,3,4,5,6,7\n"), "line 2: `fast` in column `discounted_return` is not a number");
+    assert_eq!(message("0,4000,1,2,3,4,5,6,\n"), "line 2: `` in column `stiffness_total` is not a number");
+    assert_eq!(
+        message(&format!("{good}1,3999,1,2,3,4,5,6,7\n")),
+        "line 3: env_steps falls from 4000 to 3999; a table holds one run, in order"
+    );
+}
+
+#[test]
+fn what_is_no_metrics_table_is_refused() {
+    let of = |text: &[u8]| read(text).unwrap_err();
+    assert!(of(b"").to_string().starts_with("line 1 is not a header of metrics: column 1 is ``"));
+    let other = of(b"iteration,env_steps,discounted_return\n").to_string();
+    assert!(other.contains("column 3 is `discounted_return`, expected `wall_s`"), "{other}");
+    assert!(matches!(of(&[0xff, 0xfe, b'\n']), MetricsError::Text { line: 1 }));
+    assert!(matches!(of(&vec![b'x'; 10 * LONGEST_LINE]), MetricsError::Long { line: 1 }));
+    // Escapes must not reach a terminal, nor a whole file an error message.
+    let escape = message(&format!("0,4000,\u{1b}[31m{},2,3,4,5,6,7\n", "x".repeat(4000)));
+    assert!(!escape.contains('\u{1b}') && escape.len() < 200, "{escape}");
+}
+
+#[test]
+fn a_row_without_end_does_not_fill_the_memory() {
+    let endless = std::io::Read::chain(std::io::Cursor::new(header()), std::io::repeat(b'1'));
+    assert!(matches!(MetricsTable::read(endless), Err(MetricsError::Long { line: 2 })));
+}
+
+#[test]
+fn rows_without_end_are_refused() {
+    struct Rows(u64);
+    impl std::io::Read for Rows {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            let row = b"0,0,0,0,0,0,0,0\n";
+            let count = buffer.len().min(1 << 16) / row.len();
+            assert!(count > 0 && self.0 < 10_000_000, "the reader does not stop");
+            for place in buffer.chunks_exact_mut(row.len()).take(count) {
+                place.copy_from_slice(row);
+            }
+            self.0 += count as u64;
+            Ok(count * row.len())
+        }
+    }
+    let endless = std::io::Read::chain(std::io::Cursor::new(FIXED_COLUMNS.join(",") + "\n"), Rows(0));
+    assert!(matches!(MetricsTable::read(endless), Err(MetricsError::Rows)));
+}
+
+#[test]
+fn names_that_break_a_header_are_refused() {
+    let long = "x".repeat(65);
+    for name in ["", "a,b", "a\nb", "\"a\"", "return", " a", &long] {
+        assert!(matches!(MetricsWriter::new(Vec::new(), &[name]), Err(MetricsError::Name { .. })), "{name}");
+        let text = format!("{},{name}\n", FIXED_COLUMNS.join(","));
+        assert!(name == "a,b" || read(text).is_err(), "{name}");
+    }
+    assert!(matches!(MetricsWriter::new(Vec::new(), &["a", "a"]), Err(MetricsError::Name { .. })));
+    let many: Vec<String> = (0..65).map(|i| format!("total_{i}")).collect();
+    assert!(matches!(MetricsWriter::new(Vec::new(), &many), Err(MetricsError::Totals { found: 65 })));
+}
+
+#[test]
+fn a_row_of_another_table_is_not_written() {
+    let mut writer = MetricsWriter::new(Vec::new(), &["stiffness_total"]).unwrap();
+    assert!(matches!(writer.append(&row(0, [0.0; 8])), Err(MetricsError::Fields { found: 10, expected: 9, .. })));
+    assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), header());
+}

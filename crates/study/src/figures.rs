@@ -1,0 +1,208 @@
+//! The figures of one method over its seeds, and of pairs of methods.
+
+use hwasp_core::Stream;
+use hwasp_runs::metrics::MetricsTable;
+use hwasp_training::TRAILING;
+use hwasp_training::stats::{Bootstrap, Sample, StatsError, improvement};
+use rand::SeedableRng;
+use serde::{Deserialize, Serialize};
+
+use crate::cell::CellResult;
+
+/// The bootstrap of a comparison draws the same resamples every time.
+const RESAMPLES: [u8; 32] = *b"bootstrap of hwasp's comparisons";
+
+/// An interquartile mean over seeds with its 95 % bootstrap interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// The interquartile mean.
+    pub iqm: f64,
+    /// The lower end of the interval.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl Figure {
+    pub(super) fn of(values: &[f64]) -> Result<Self, StatsError> {
+        let sample = Sample::new(values)?;
+        let mut stream = Stream::from_seed(RESAMPLES);
+        let interval = Bootstrap::default().interval(&sample, Sample::interquartile_mean, &mut stream)?;
+        Ok(Self { iqm: sample.interquartile_mean(), low: interval.low, high: interval.high })
+    }
+}
+
+/// When a threshold was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reached {
+    /// Seeds that reached it.
+    pub seeds: usize,
+    /// The median of their real steps; none where less than half of all seeds reached it.
+    pub median_env_steps: Option<f64>,
+}
+
+/// What one method reached.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodFigures {
+    /// The method.
+    pub label: String,
+    /// Seeds that finished.
+    pub seeds: usize,
+    /// Deterministic discounted return on held-out starts, on the hardware as built.
+    pub evaluation: Figure,
+    /// The same, seed by seed.
+    pub evaluations: Vec<f64>,
+    /// Area under the learning curve: the training return's mean over the whole budget.
+    pub area_under_curve: Figure,
+    /// Steps to the threshold.
+    pub threshold: Reached,
+    /// Distance of a design total as built from the known optimum, by group, SI; empty where none is known.
+    pub design_error: Vec<(String, Figure)>,
+    /// Design totals as built, by group, seed by seed, SI.
+    pub design_totals: Vec<(String, Vec<f64>)>,
+    /// Real simulator steps charged, the mean over seeds.
+    pub env_steps: f64,
+    /// Time of training, s, the mean over seeds.
+    pub wall_s: f64,
+    /// Candidates that failed, over all seeds.
+    pub failed_candidates: u64,
+}
+
+impl MethodFigures {
+    pub(super) fn of(label: &str, cells: &[&CellResult], threshold: f64) -> Result<Self, StatsError> {
+        let each = |pick: &dyn Fn(&CellResult) -> f64| cells.iter().map(|cell| pick(cell)).collect::<Vec<f64>>();
+        let mean = |pick: &dyn Fn(&CellResult) -> f64| each(pick).iter().sum::<f64>() / cells.len() as f64;
+        let evaluations = each(&|c| c.summary.evaluation.discounted_return.mean);
+        let budget = cells.iter().map(|c| c.summary.env_steps).max().unwrap_or(0);
+        let mut design_error = Vec::new();
+        let mut design_totals = Vec::new();
+        for (group, first) in cells.first().map(|c| &c.summary.design).into_iter().flatten() {
+            let totals = each(&|c| c.summary.design.get(group).map_or(f64::NAN, |g| g.total_as_built));
+            if let Some(optimum) = first.optimum {
+                let errors: Vec<f64> = totals.iter().map(|total| (total - optimum).abs()).collect();
+                design_error.push((group.clone(), Figure::of(&errors)?));
+            }
+            design_totals.push((group.clone(), totals));
+        }
+        let mut reached: Vec<f64> = cells.iter().filter_map(|c| steps_to(&c.metrics, threshold)).collect();
+        reached.resize(cells.len().max(reached.len()), f64::INFINITY);
+        reached.sort_unstable_by(f64::total_cmp);
+        let median = 0.5 * (reached[(cells.len() - 1) / 2] + reached[cells.len() / 2]);
+        Ok(Self {
+            label: label.to_owned(),
+            seeds: cells.len(),
+            evaluation: Figure::of(&evaluations)?,
+            evaluations,
+            area_under_curve: Figure::of(&each(&|c| area(&c.metrics, budget)))?,
+            threshold: Reached {
+                seeds: reached.iter().filter(|steps| steps.is_finite()).count(),
+                median_env_steps: median.is_finite().then_some(median),
+            },
+            design_error,
+            design_totals,
+            env_steps: mean(&|c| c.summary.env_steps as f64),
+            wall_s: mean(&|c| c.summary.wall_s),
+            failed_candidates: cells.iter().filter_map(|c| c.summary.failed_candidates).sum(),
+        })
+    }
+}
+
+/// How probably one method is better than another: the share of pairs of seeds in which it is, ties counted half
+/// (Agarwal et al. 2021, section 4.3), with the 95 % interval of a bootstrap that resamples both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pair {
+    /// The one.
+    pub method: String,
+    /// The other.
+    pub other: String,
+    /// The probability that the one is better.
+    pub probability: f64,
+    /// The lower end of the interval.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl Pair {
+    pub(super) fn of(one: &MethodFigures, other: &MethodFigures) -> Result<Self, StatsError> {
+        let mut stream = Stream::from_seed(RESAMPLES);
+        let (probability, interval) = improvement(&one.evaluations, &other.evaluations, &mut stream)?;
+        let (low, high) = (interval.low, interval.high);
+        Ok(Self { method: one.label.clone(), other: other.label.clone(), probability, low, high })
+    }
+}
+
+/// The mean of the training return over a budget: each row holds for the steps that it took, the last one to the end.
+fn area(metrics: &MetricsTable, budget: u64) -> f64 {
+    let mut before = 0;
+    let mut sum = 0.0;
+    let rows = metrics.rows.iter().filter(|row| row.discounted_return.is_finite());
+    let mut last = None;
+    for row in rows {
+        sum += row.discounted_return * (row.env_steps - before) as f64;
+        before = row.env_steps;
+        last = Some(row.discounted_return);
+    }
+    sum += last.unwrap_or(f64::NAN) * budget.saturating_sub(before) as f64;
+    sum / budget.max(1) as f64
+}
+
+/// The mean over the last rows at each row.
+pub(super) fn trailing(metrics: &MetricsTable) -> impl Iterator<Item = (u64, f64)> + '_ {
+    (0..metrics.rows.len()).map(|end| {
+        let rows = &metrics.rows[(end + 1).saturating_sub(TRAILING)..=end];
+        let mean = rows.iter().map(|row| row.discounted_return).sum::<f64>() / rows.len() as f64;
+        (metrics.rows[end].env_steps, mean)
+    })
+}
+
+/// Real steps at which the trailing mean of the training return reached a threshold.
+fn steps_to(metrics: &MetricsTable, threshold: f64) -> Option<f64> {
+    trailing(metrics).find(|(_, mean)| *mean >= threshold).map(|(steps, _)| steps as f64)
+}
+
+/// Nine tenths of the way from the worst first return of all runs to the best last one.
+pub(super) fn default_threshold(cells: &[CellResult]) -> f64 {
+    let firsts = cells.iter().filter_map(|c| c.metrics.rows.first()).map(|row| row.discounted_return);
+    let lasts = cells.iter().filter_map(|c| trailing(&c.metrics).last()).map(|(_, mean)| mean);
+    let (worst, best) = (firsts.fold(f64::INFINITY, f64::min), lasts.fold(f64::NEG_INFINITY, f64::max));
+    worst + 0.9 * (best - worst)
+}
+
+#[cfg(test)]
+mod tests {
+    use hwasp_training::MetricsRow;
+
+    use super::*;
+
+    fn table(rows: &[(u64, f64)]) -> MetricsTable {
+        let row = |(i, &(env_steps, discounted_return)): (usize, &(u64, f64))| MetricsRow {
+            iteration: i as u64,
+            env_steps,
+            wall_s: 0.0,
+            discounted_return,
+            undiscounted_return: 0.0,
+            kl: 0.0,
+            entropy: 0.0,
+            step_fraction: 0.0,
+            design_totals: vec![],
+        };
+        MetricsTable { rows: rows.iter().enumerate().map(row).collect(), ..MetricsTable::default() }
+    }
+
+    #[test]
+    fn the_area_by_hand() {
+        let metrics = table(&[(100, -10.0), (300, -4.0)]);
+        assert_eq!(area(&metrics, 300), (-10.0 * 100.0 - 4.0 * 200.0) / 300.0);
+        // What ended early keeps its last return.
+        assert_eq!(area(&metrics, 600), (-10.0 * 100.0 - 4.0 * 500.0) / 600.0);
+    }
+
+    #[test]
+    fn steps_to_a_threshold_count_the_trailing_mean() {
+        let metrics = table(&[(100, -10.0), (200, 0.0), (300, 0.0), (400, 0.0)]);
+        assert_eq!(steps_to(&metrics, -5.0), Some(200.0));
+        assert_eq!(steps_to(&metrics, -3.0), Some(400.0), "one lucky row does not do");
+        assert_eq!(steps_to(&metrics, -1.0), None);
+    }
+}

@@ -1,0 +1,156 @@
+//! Small trainings of every kind, and what they come to: for the tests of the other crates.
+
+#![forbid(unsafe_code)]
+#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use hwasp_core::{EnvSpec, Environment, Executor, Serial, Step, Stream, Threads};
+use hwasp_training::spec::{self, Spec};
+use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, Trained, train_from};
+
+/// Keys and values.
+pub type Settings = &'static [(&'static str, &'static str)];
+
+const MLP: &str = "mlp";
+
+/// Every kind of thing that learns: method, settings.
+pub const KINDS: [(&str, Settings); 9] = [
+    ("hwasp", &[]),
+    ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
+    ("hwasp", &[("learner.algorithm", "trpo"), ("baseline.kind", MLP)]),
+    ("cmaes", &[]),
+    ("cmaes", &[("cmaes.separable", "true"), ("cmaes.restarts", "2")]),
+    ("ars", &[("ars.variant", "v2-t"), ("ars.directions", "8")]),
+    ("cmaes-rl", &[("cmaes.popsize", "5"), ("train.env_steps", "24000")]),
+    ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000"), ("learner.algorithm", "trpo")]),
+    ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
+];
+
+/// A training on the reach problem: 40 episodes of 30 steps an iteration.
+pub fn small(method: &str, settings: Settings) -> Spec {
+    let few = [("train.env_steps", "9600"), ("train.evaluation_episodes", "4"), ("search.inner_env_steps", "2400")];
+    let steps = if matches!(method, "cmaes" | "ars") { "40000" } else { few[0].1 };
+    let layers = few.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = layers.with_override("train.env_steps", steps);
+    let layers = settings.iter().fold(layers, |layers, (k, v)| layers.with_override(k, v));
+    spec::resolve(layers, Some(method)).unwrap()
+}
+
+/// A path in `root` where nothing is: a test gives its `env!("CARGO_TARGET_TMPDIR")`.
+pub fn empty(root: &str, name: &str) -> PathBuf {
+    let path = Path::new(root).join(name);
+    let _ = fs::remove_dir_all(&path);
+    path
+}
+
+/// Keeps rows, and every checkpoint there can be.
+#[derive(Default)]
+pub struct Keeper {
+    /// The rows, without the time they took.
+    pub rows: Vec<MetricsRow>,
+    /// The checkpoints.
+    pub checkpoints: Vec<Checkpoint>,
+}
+
+impl Observer for Keeper {
+    fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
+        match event {
+            Event::Iteration(row) => self.rows.push(MetricsRow { wall_s: 0.0, ..row.clone() }),
+            Event::Checkpoint(checkpoint) => self.checkpoints.push(checkpoint.clone()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn due(&self) -> bool {
+        true
+    }
+}
+
+/// So many threads.
+pub fn executor(threads: usize) -> Box<dyn Executor> {
+    if threads == 1 { Box::new(Serial) } else { Box::new(Threads::new(threads).unwrap()) }
+}
+
+/// Trains from the beginning or from a checkpoint.
+pub fn run(assembly: &Assembly, from: Option<&Checkpoint>, threads: usize) -> (Trained, Keeper) {
+    let mut keeper = Keeper::default();
+    let trained = train_from(from, assembly, &*executor(threads), &mut keeper, &AtomicBool::new(false)).unwrap();
+    (trained, keeper)
+}
+
+/// Everything of a result but the time it took, so that equal texts are equal bits.
+pub fn told(trained: &Trained) -> String {
+    let bits: Vec<u32> = trained.params.iter().map(|p| p.to_bits()).collect();
+    format!("{bits:?} {:?}", Trained { wall_s: 0.0, ..trained.clone() })
+}
+
+/// Sets the flag after some checkpoints or rows, as a signal would.
+pub struct Stopper<'a> {
+    /// Is told everything.
+    pub inner: &'a mut dyn Observer,
+    /// The flag.
+    pub stop: &'a AtomicBool,
+    /// How many.
+    pub after: usize,
+}
+
+impl Observer for Stopper<'_> {
+    fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
+        if matches!(event, Event::Checkpoint(_)) {
+            self.after = self.after.saturating_sub(1);
+            self.stop.fetch_or(self.after == 0, Ordering::Relaxed);
+        }
+        self.inner.on(event)
+    }
+
+    fn due(&self) -> bool {
+        self.inner.due()
+    }
+}
+
+/// Lets `how` change what the environments of an assembly answer to an effort.
+pub fn spoil(assembly: &mut Assembly, how: impl Fn(&[f64], Step) -> Step + Send + Sync + 'static) {
+    let (how, whole): (Arc<How>, _) = (Arc::new(how), assembly.problem.training.make.clone());
+    assembly.problem.training.make = Arc::new(move |horizon| {
+        Box::new(Spoiled { inner: whole.make(horizon), how: how.clone() }) as Box<dyn Environment>
+    });
+    assembly.problem.deployment = assembly.problem.training.clone();
+}
+
+type How = dyn Fn(&[f64], Step) -> Step + Send + Sync;
+
+struct Spoiled {
+    inner: Box<dyn Environment>,
+    how: Arc<How>,
+}
+
+impl Environment for Spoiled {
+    fn spec(&self) -> &EnvSpec {
+        self.inner.spec()
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.inner.reset(rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.inner.state(out);
+    }
+
+    fn context(&self, out: &mut [f64]) {
+        self.inner.context(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        (self.how)(effort, self.inner.step(effort, command))
+    }
+}

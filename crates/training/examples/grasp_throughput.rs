@@ -1,0 +1,115 @@
+//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes. The last line says it in JSON.
+//!
+//!     grasp_throughput [THREADS [ITERATIONS]]        default: 2 threads, 2 iterations of 20,000 steps
+//!
+//! The clock runs inside of every environment step, which is ten steps of the physics. What the same threads would do
+//! stepping the same physics alone is their number over the mean of those times.
+
+#![allow(clippy::print_stdout)] // a program
+
+use std::error::Error;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use hwasp_core::{EnvSpec, Environment, EpisodeKind, Episodes, Outcome, Sampler, Step, Stream, Threads};
+use hwasp_training::{Assembly, spec};
+use serde_json::json;
+
+/// An environment that adds up the time of its steps.
+struct Timed {
+    inner: Box<dyn Environment>,
+    nanoseconds: Arc<AtomicU64>,
+}
+
+impl Environment for Timed {
+    fn spec(&self) -> &EnvSpec {
+        self.inner.spec()
+    }
+
+    fn set_progress(&mut self, progress: f64) {
+        self.inner.set_progress(progress);
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.inner.reset(rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.inner.state(out);
+    }
+
+    fn context(&self, out: &mut [f64]) {
+        self.inner.context(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        let began = Instant::now();
+        let step = self.inner.step(effort, command);
+        self.nanoseconds.fetch_add(began.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        step
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        self.inner.outcome()
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.inner.fault()
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
+    let threads = arguments.next().transpose()?.unwrap_or(2);
+    let iterations = arguments.next().transpose()?.unwrap_or(2);
+    let settings = [("train.env_steps", (20_000 * iterations).to_string())];
+    let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
+    let mut assembly = Assembly::new(&spec::resolve(layers, None)?)?;
+    let (whole, nanoseconds) = (Arc::clone(&assembly.problem.training.make), Arc::new(AtomicU64::new(0)));
+    let counted = Arc::clone(&nanoseconds);
+    assembly.problem.training.make = Arc::new(move |horizon| {
+        Box::new(Timed { inner: whole.make(horizon), nanoseconds: Arc::clone(&counted) }) as Box<dyn Environment>
+    });
+
+    let executor = Threads::new(threads as usize)?;
+    let train = &assembly.spec().train;
+    let sampler = Sampler::new(
+        Arc::clone(&assembly.policy),
+        Arc::clone(&assembly.problem.training.make),
+        Some(train.episode_steps),
+    );
+    let mut learner = assembly.learner(assembly.init());
+    let (mut sampling, mut updating, mut steps) = (0.0, 0.0, 0.0);
+    for iteration in 0..iterations {
+        let progress = iteration as f64 / iterations as f64;
+        let indices = 0..train.episodes_per_iteration as u64;
+        let asked = Episodes { seed: 0, iteration, indices, progress, kind: EpisodeKind::Training };
+        let began = Instant::now();
+        let batch = sampler.collect(&executor, learner.params(), &asked)?;
+        let collected = Instant::now();
+        learner.update(&executor, &batch, progress, iteration)?;
+        sampling += (collected - began).as_secs_f64();
+        updating += collected.elapsed().as_secs_f64();
+        steps += batch.rows() as f64;
+    }
+    let physics = 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64 / threads as f64;
+    let whole = sampling + updating;
+
+    println!("z-grasp, {steps} steps on {threads} threads");
+    println!("  training, everything included  {:8.0} steps/s", steps / whole);
+    println!("  the same physics alone         {:8.0} steps/s", steps / physics);
+    println!("  share of the time in physics   {:8.1} %", 100.0 * physics / whole);
+    println!("  controller, law, waiting       {:8.1} %", 100.0 * (sampling - physics) / whole);
+    println!("  updates                        {:8.1} %", 100.0 * updating / whole);
+    println!(
+        "{}",
+        json!({ "training": steps / whole, "physics": steps / physics, "share": physics / whole,
+                "acting": (sampling - physics) / whole, "updates": updating / whole })
+    );
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! Why a training ends early.
+
+use hwasp_algos::{LearnError, SearchError, StateError};
+use hwasp_core::RolloutError;
+use thiserror::Error;
+
+use crate::assemble::AssembleError;
+use crate::evaluate::EvaluateError;
+use crate::observer::ObserverError;
+
+/// Why a training ended early.
+#[derive(Debug, Error)]
+pub enum TrainError {
+    /// An episode failed.
+    #[error(transparent)]
+    Rollout(#[from] RolloutError),
+    /// An update failed.
+    #[error(transparent)]
+    Learn(#[from] LearnError),
+    /// The physics of most episodes failed, again and again: what is learned from the rest is worth nothing.
+    #[error(
+        "the physics of most episodes failed in {iterations} iterations in a row ({failed} of {asked} in the last); {first}"
+    )]
+    Physics {
+        /// How many iterations.
+        iterations: u64,
+        /// Episodes that failed in the last of them.
+        failed: usize,
+        /// Episodes asked for in each.
+        asked: usize,
+        /// The first of those that failed.
+        first: RolloutError,
+    },
+    /// Someone asked it to stop. Its observer has a checkpoint of all that was done.
+    #[error("stopped after {env_steps} of {budget} steps")]
+    Interrupted {
+        /// Real simulator steps taken.
+        env_steps: u64,
+        /// Those of the whole training.
+        budget: u64,
+    },
+    /// The state of what learns cannot be saved, or a saved one is not of this experiment.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// A search could not go on.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// A candidate's own training cannot be put together.
+    #[error(transparent)]
+    Assemble(#[from] AssembleError),
+    /// The evaluation failed.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
+    /// Someone who watched could not go on, the run folder for one.
+    #[error(transparent)]
+    Observer(#[from] ObserverError),
+}

@@ -1,0 +1,161 @@
+//! The loop that follows the policy's gradient: jobs out, a batch in, an update, an event.
+
+use hwasp_algos::{Archive, Exchange, Learner, Persist, StateError, UpdateMetrics};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, Sampler};
+
+use crate::assemble::Assembly;
+use crate::checkpoint::Checkpoint;
+use crate::error::TrainError;
+use crate::learned::{Clock, Learned, Loop};
+use crate::observer::{Event, Fault};
+
+/// Iterations in a row in which the physics of most episodes may fail.
+const MOST_FAULTY_ITERATIONS: u64 = 3;
+
+/// A training by gradients between two iterations.
+pub(crate) struct Gradient<'a> {
+    assembly: &'a Assembly,
+    sampler: Sampler,
+    learner: Box<dyn Learner>,
+    pub(crate) learned: Learned,
+}
+
+impl Persist for Gradient<'_> {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.part("loop", &mut self.learned)?;
+        with.part("learner", &mut *self.learner)
+    }
+}
+
+/// Follows the policy's gradient, from the beginning or from where a training was interrupted.
+pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
+    let budget = assembly.spec().train.env_steps;
+    let mut state = Gradient::new(assembly, from)?;
+    run.clock = Clock::start(state.learned.wall_s);
+    while state.learned.env_steps < budget {
+        if run.stopped() {
+            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+            return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
+        }
+        state.iterate(run)?;
+        if run.observer.due() {
+            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+        }
+    }
+    // What is left to do, an evaluation, may be long.
+    run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
+    state.learned.params = state.params();
+    Ok(state.learned)
+}
+
+impl<'a> Gradient<'a> {
+    /// From the beginning, or from where a training was interrupted.
+    pub(crate) fn new(assembly: &'a Assembly, from: Option<&Archive>) -> Result<Self, StateError> {
+        let mut state = Self::beginning(assembly, assembly.init());
+        if let Some(archive) = from {
+            state.load(archive)?;
+        }
+        Ok(state)
+    }
+
+    /// From the beginning, with these parameters.
+    pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
+        let episode_steps = assembly.spec().train.episode_steps;
+        let sampler =
+            Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(episode_steps));
+        Self { assembly, sampler, learner: assembly.learner(params), learned: Learned::default() }
+    }
+
+    pub(crate) fn params(&self) -> Vec<f32> {
+        self.learner.params().to_vec()
+    }
+
+    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, StateError> {
+        let archive = self.save()?;
+        Ok(self.learned.checkpoint(archive))
+    }
+
+    fn iterate(&mut self, run: &mut Loop<'_>) -> Result<(), TrainError> {
+        let progress = self.progress();
+        let batch = self.collect(run.executor).or_else(|error| self.fail(None, error, run))?;
+        let update = self.learn(run.executor, &batch, progress);
+        let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
+        self.learned.env_steps += batch.env_steps();
+        self.learned.discarded_episodes += batch.faults.len() as u64;
+        let policy = &self.assembly.policy;
+        let totals = policy.space().totals(&policy.design(self.learner.params()));
+        let returns = mean_returns(&batch, self.assembly.spec().discount());
+        Ok(self.learned.tell(returns, Some(update), totals, run)?)
+    }
+
+    /// Tells the observer of an iteration that failed, with all that it takes to repeat it: the learner is as it was.
+    fn fail<T>(&mut self, batch: Option<&Batch>, error: TrainError, run: &mut Loop<'_>) -> Result<T, TrainError> {
+        let (checkpoint, what) = (self.checkpoint()?, error.to_string());
+        run.observer.on(Event::Failed(&Fault { checkpoint: &checkpoint, batch, what: &what }))?;
+        Err(error)
+    }
+
+    /// The share of the budget that is spent.
+    fn progress(&self) -> f64 {
+        self.learned.env_steps as f64 / self.assembly.spec().train.env_steps as f64
+    }
+
+    /// The episodes of the iteration at hand.
+    fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
+        let train = &self.assembly.spec().train;
+        let asked = Episodes {
+            seed: self.assembly.spec().seed,
+            iteration: self.learned.iterations,
+            indices: 0..train.episodes_per_iteration as u64,
+            progress: self.progress(),
+            kind: EpisodeKind::Training,
+        };
+        Ok(self.sampler.collect(executor, self.learner.params(), &asked)?)
+    }
+
+    /// The update of the iteration at hand.
+    fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<UpdateMetrics, TrainError> {
+        let asked = self.assembly.spec().train.episodes_per_iteration;
+        let faulty = 2 * batch.faults.len() > asked;
+        let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
+        if in_a_row >= MOST_FAULTY_ITERATIONS
+            && let Some(first) = batch.faults.first()
+        {
+            return Err(TrainError::Physics {
+                iterations: in_a_row,
+                failed: batch.faults.len(),
+                asked,
+                first: first.clone(),
+            });
+        }
+        let update = self.learner.update(executor, batch, progress, self.learned.iterations)?;
+        self.learned.faulty_iterations = in_a_row;
+        Ok(update)
+    }
+}
+
+/// The mean discounted and undiscounted returns of a batch's episodes.
+pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
+    let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
+    (mean(batch.returns(discount)), mean(batch.returns(1.0)))
+}
+
+/// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
+///
+/// # Errors
+/// Of a state that is not one of this experiment. What fails in the iteration is in the result.
+pub fn repeat(
+    assembly: &Assembly,
+    from: &Archive,
+    executor: &dyn Executor,
+) -> Result<(Option<Batch>, Result<UpdateMetrics, TrainError>), StateError> {
+    let mut state = Gradient::new(assembly, Some(from))?;
+    let progress = state.progress();
+    Ok(match state.collect(executor) {
+        Ok(batch) => {
+            let outcome = state.learn(executor, &batch, progress);
+            (Some(batch), outcome)
+        }
+        Err(error) => (None, Err(error)),
+    })
+}

@@ -1,0 +1,132 @@
+//! Where a training stands, whatever trains.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use hwasp_algos::{Archive, Exchange, Persist, StateError, UpdateMetrics};
+use hwasp_core::Executor;
+
+use crate::checkpoint::Checkpoint;
+use crate::metrics::MetricsRow;
+use crate::observer::{Event, Observer, ObserverError};
+
+/// Iterations over which the final training return is averaged, as the paper's curves are.
+pub const TRAILING: usize = 11;
+
+/// What a training loop runs with.
+pub(crate) struct Loop<'a> {
+    pub(crate) executor: &'a dyn Executor,
+    pub(crate) observer: &'a mut dyn Observer,
+    pub(crate) stop: &'a AtomicBool,
+    pub(crate) clock: Clock,
+}
+
+impl Loop<'_> {
+    /// Whether someone wants it to end.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// The time that a training has taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Clock {
+    began: Instant,
+    /// Before it was resumed, s.
+    before: f64,
+}
+
+impl Clock {
+    /// Starts; `before`: what a training took until it was interrupted, s.
+    pub(crate) fn start(before: f64) -> Self {
+        Self { began: Instant::now(), before }
+    }
+
+    /// Seconds.
+    pub(crate) fn wall_s(&self) -> f64 {
+        self.before + self.began.elapsed().as_secs_f64()
+    }
+}
+
+/// Where a training stands.
+#[derive(Default)]
+pub(crate) struct Learned {
+    /// What it came to; empty while it goes on.
+    pub(crate) params: Vec<f32>,
+    pub(crate) iterations: u64,
+    pub(crate) env_steps: u64,
+    pub(crate) failed_candidates: u64,
+    pub(crate) discarded_episodes: u64,
+    /// Iterations in a row in which the physics of most episodes failed.
+    pub(crate) faulty_iterations: u64,
+    /// Time it took, s.
+    pub(crate) wall_s: f64,
+    /// Mean discounted and undiscounted returns of the last iterations.
+    recent: VecDeque<(f64, f64)>,
+}
+
+impl Learned {
+    /// Counts an iteration whose steps are counted already, and tells of it; a search has no update.
+    pub(crate) fn tell(
+        &mut self,
+        returns: (f64, f64),
+        update: Option<UpdateMetrics>,
+        design_totals: Vec<f64>,
+        run: &mut Loop<'_>,
+    ) -> Result<(), ObserverError> {
+        self.recent.push_back(returns);
+        if self.recent.len() > TRAILING {
+            self.recent.pop_front();
+        }
+        self.wall_s = run.clock.wall_s();
+        run.observer.on(Event::Iteration(&MetricsRow {
+            iteration: self.iterations,
+            env_steps: self.env_steps,
+            wall_s: self.wall_s,
+            discounted_return: returns.0,
+            undiscounted_return: returns.1,
+            kl: update.map_or(f64::NAN, |u| u.kl),
+            entropy: update.map_or(f64::NAN, |u| u.entropy),
+            step_fraction: update.map_or(f64::NAN, |u| u.trust_region.map_or(1.0, |r| r.step_fraction)),
+            design_totals,
+        }))?;
+        self.iterations += 1;
+        Ok(())
+    }
+
+    /// The mean discounted and undiscounted returns of the last [`TRAILING`] iterations.
+    pub(crate) fn trailing(&self) -> (f64, f64) {
+        let mean =
+            |pick: fn(&(f64, f64)) -> f64| self.recent.iter().map(pick).sum::<f64>() / self.recent.len().max(1) as f64;
+        (mean(|r| r.0), mean(|r| r.1))
+    }
+
+    /// A checkpoint of this and of all the rest of the training.
+    pub(crate) fn checkpoint(&self, archive: Archive) -> Checkpoint {
+        let training_return = (!self.recent.is_empty()).then(|| self.trailing().1);
+        Checkpoint { iteration: self.iterations, env_steps: self.env_steps, training_return, archive }
+    }
+}
+
+impl Persist for Learned {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.number("iterations", &mut self.iterations)?;
+        with.number("env_steps", &mut self.env_steps)?;
+        with.number("failed_candidates", &mut self.failed_candidates)?;
+        with.number("discarded_episodes", &mut self.discarded_episodes)?;
+        with.number("faulty_iterations", &mut self.faulty_iterations)?;
+        with.number("wall_s", &mut self.wall_s)?;
+        let mut recent: Vec<f64> = self.recent.iter().flat_map(|r| [r.0, r.1]).collect();
+        with.series("recent", &mut recent)?;
+        if recent.len() > 2 * TRAILING || !recent.len().is_multiple_of(2) {
+            return Err(with.refuse(
+                "recent",
+                recent.len() as f64,
+                "the length of pairs of returns, 11 of them at most",
+            ));
+        }
+        self.recent = recent.as_chunks::<2>().0.iter().map(|r| (r[0], r[1])).collect();
+        Ok(())
+    }
+}

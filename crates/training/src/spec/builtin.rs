@@ -1,0 +1,93 @@
+//! Experiments that come with the program, and files.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::fault::{SpecErrors, shorten};
+use super::layers::{LONGEST_FILE, Layers};
+use super::suggest::{listed, nearest};
+
+/// The file of an experiment, where a folder is named instead of it.
+pub const EXPERIMENT: &str = "experiment.toml";
+
+macro_rules! embedded {
+    ($($name:literal),+ $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../../experiments/", $name, ".toml")))),+]
+    };
+}
+
+/// The experiments that come with the program: name, and the file's text.
+pub const EXPERIMENTS: &[(&str, &str)] = embedded![
+    "mass-spring",
+    "mass-spring-50",
+    "bar-length",
+    "bar-length-50",
+    "reach",
+    "pendulum",
+    "pendulum-trpo",
+    "z-grasp",
+    "3d-grasp",
+    "paper/mass-spring",
+    "paper/mass-spring-50",
+    "paper/bar-length",
+    "paper/bar-length-50",
+];
+
+/// An experiment by its name, or the file at a path (anything that ends in `.toml` or exists).
+pub fn load(name_or_path: &str) -> Result<Layers, SpecErrors> {
+    if let Some((name, text)) = EXPERIMENTS.iter().find(|(name, _)| *name == name_or_path) {
+        return Layers::from_text(name, text);
+    }
+    let path = Path::new(name_or_path);
+    let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if !is_toml && !path.exists() {
+        let message = format!("there is neither an experiment nor a file `{}`", shorten(name_or_path, 120));
+        let names = || EXPERIMENTS.iter().map(|(name, _)| *name);
+        let mut hint = format!("the experiments are {}; files end in .toml", listed(names()));
+        let file = format!("{name_or_path}.toml");
+        if Path::new(&file).is_file() {
+            hint = format!("did you mean the file `{}`? {hint}", shorten(&file, 120));
+        } else if let Some(near) = nearest(name_or_path, names()) {
+            hint = format!("did you mean `{near}`? {hint}");
+        }
+        return Err(SpecErrors::single(name_or_path, message, Some(hint)));
+    }
+    let bytes = read(path).map_err(|error| unreadable(name_or_path, &error))?;
+    match String::from_utf8(bytes) {
+        Ok(text) => Layers::from_text(name_or_path, &text),
+        Err(error) => {
+            let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let line = valid.split(|&byte| byte == b'\n').count();
+            let hint = "an experiment is a text in TOML, saved as UTF-8".to_owned();
+            Err(SpecErrors::single(name_or_path, format!("line {line} is no UTF-8 text"), Some(hint)))
+        }
+    }
+}
+
+/// What to say of a path that is no file to read.
+fn unreadable(name: &str, error: &io::Error) -> SpecErrors {
+    let path = Path::new(name);
+    if path.is_dir() {
+        let file = path.join(EXPERIMENT);
+        let hint = if file.is_file() {
+            format!("the experiment of this run is {}", shorten(&file.display().to_string(), 120))
+        } else {
+            "name a file, or an experiment of `hwasp list`".into()
+        };
+        return SpecErrors::single(name, "this is a folder, where an experiment is a file".into(), Some(hint));
+    }
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let hint = match nearest(stem, EXPERIMENTS.iter().map(|(name, _)| *name)) {
+        Some(near) if !path.exists() => format!("`{near}` without .toml comes with the program"),
+        _ => "see that the path is right and that you may read it".into(),
+    };
+    SpecErrors::single(name, format!("the file cannot be read: {error}"), Some(hint))
+}
+
+/// A file's bytes, at most one more than may be; the length is refused where the text is read.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LONGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

@@ -1,0 +1,103 @@
+//! Trainings: from an assembled experiment to parameters and their evaluation.
+
+use std::sync::atomic::AtomicBool;
+
+use hwasp_core::Executor;
+
+use crate::assemble::Assembly;
+use crate::checkpoint::Checkpoint;
+use crate::error::TrainError;
+use crate::evaluate::{Evaluation, evaluate};
+use crate::gradient::{Gradient, gradient};
+use crate::learned::{Clock, Loop};
+use crate::observer::{Event, Observer};
+use crate::search::{best_so_far, search};
+
+/// What a training gave.
+#[derive(Clone, Debug)]
+pub struct Trained {
+    /// The policy's parameters.
+    pub params: Vec<f32>,
+    /// Iterations done; generations of a search.
+    pub iterations: u64,
+    /// Real simulator steps taken in training, those of every candidate and every training inside included.
+    pub env_steps: u64,
+    /// Time the training took, s, the evaluation apart.
+    pub wall_s: f64,
+    /// The mean discounted return of the training episodes over the last [`TRAILING`](crate::TRAILING) iterations.
+    pub training_discounted_return: f64,
+    /// The same, undiscounted.
+    pub training_return: f64,
+    /// Candidates of a search that failed and ranked last; none where the method does not search.
+    pub failed_candidates: Option<u64>,
+    /// Episodes whose physics failed; their steps are charged, and nothing was learned from them.
+    pub discarded_episodes: u64,
+    /// The final design on held-out starts.
+    pub evaluation: Evaluation,
+}
+
+/// Trains an experiment to the end of its budget.
+///
+/// # Errors
+/// [`TrainError::Interrupted`] where `stop` was set: the iteration at hand was finished, and `observer` was given a
+/// checkpoint.
+pub fn train(
+    assembly: &Assembly,
+    executor: &dyn Executor,
+    observer: &mut dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Trained, TrainError> {
+    train_from(None, assembly, executor, observer, stop)
+}
+
+/// Trains from a checkpoint of the same experiment, where there is one: the result has the bits of a training that was
+/// never interrupted, for any number of threads before and after.
+pub fn train_from(
+    from: Option<&Checkpoint>,
+    assembly: &Assembly,
+    executor: &dyn Executor,
+    observer: &mut dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Trained, TrainError> {
+    let spec = assembly.spec();
+    let (totals, resumed) = (assembly.total_names(), from.map(|checkpoint| checkpoint.env_steps));
+    observer.on(Event::Started { env_steps: spec.train.env_steps, resumed, totals: &totals })?;
+    let mut run = Loop { executor, observer, stop, clock: Clock::start(0.0) };
+    let from = from.map(|checkpoint| &checkpoint.archive);
+    let learned =
+        if spec.method.searches() { search(assembly, &mut run, from)? } else { gradient(assembly, &mut run, from)? };
+    let wall_s = run.clock.wall_s();
+    observer.on(Event::Evaluating)?;
+    let asked = (spec.train.evaluation_episodes as u64, spec.train.evaluation_seed);
+    let evaluation = evaluate(assembly, &learned.params, asked, executor)?;
+    observer.on(Event::Evaluated(&evaluation))?;
+    let (training_discounted_return, training_return) = learned.trailing();
+    Ok(Trained {
+        iterations: learned.iterations,
+        env_steps: learned.env_steps,
+        wall_s,
+        training_discounted_return,
+        training_return,
+        failed_candidates: spec.method.searches().then_some(learned.failed_candidates),
+        discarded_episodes: learned.discarded_episodes,
+        evaluation,
+        params: learned.params,
+    })
+}
+
+/// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
+///
+/// # Errors
+/// Where a parameter is no number.
+pub fn beginning(assembly: &Assembly, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
+    Ok(Gradient::beginning(assembly, params).checkpoint()?)
+}
+
+/// The parameters that a training had come to: the learner's, or the best of a search.
+pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
+    let archive = &checkpoint.archive;
+    if assembly.spec().method.searches() {
+        return best_so_far(assembly, archive);
+    }
+    Ok(Gradient::new(assembly, Some(archive))?.params())
+}

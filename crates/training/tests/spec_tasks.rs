@@ -1,0 +1,35 @@
+//! What a spec says of its task, so that files can be checked without one, is what the task itself says.
+
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
+use hwasp_training::Assembly;
+use hwasp_training::spec::{EXPERIMENTS, Method, load, resolve};
+
+#[test]
+fn groups_efforts_and_observations_are_those_of_the_task() {
+    for (name, _) in EXPERIMENTS {
+        for (method, _) in Method::ALL {
+            let spec = resolve(load(name).unwrap(), Some(method)).unwrap();
+            if name.ends_with("-grasp") && !cfg!(feature = "mujoco") {
+                let error = Assembly::new(&spec).err().unwrap().to_string();
+                assert!(error.starts_with(&format!("{name} needs the MuJoCo engine")), "{error}");
+                continue;
+            }
+            let world = Assembly::new(&spec).unwrap().problem.training;
+            let (said, real) = (spec.task.groups(), world.law.design().groups());
+            assert_eq!(said.len(), real.len(), "{name}");
+            let mut first = 0;
+            for (said, real) in said.iter().zip(real) {
+                assert_eq!((said.name, said.first), (&*real.name, first), "{name}");
+                assert_eq!((said.dimension, said.count), (real.dimension, real.count), "{name}");
+                assert_eq!((said.lo, said.hi), (real.lo, real.hi), "{name}");
+                first += real.count;
+            }
+
+            let robot = world.make.make(None).spec().clone();
+            assert_eq!(robot.horizon, spec.task.horizon, "{name}");
+            assert_eq!(robot.observation.len(), spec.task.observations(), "{name}");
+            assert!(robot.effort.iter().all(|port| port.dimension == spec.task.effort_dimension()), "{name} {method}");
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Training the controller further, on the parts.
+
+use std::path::Path;
+
+use hwasp_core::Policy;
+use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, saved_spec};
+use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_training::spec::{EXPERIMENT, InitialSpec, Method, PerCommand, Place, Problem, Spec};
+use hwasp_training::{Assembly, Checkpoint, beginning};
+
+use super::PartsError;
+
+/// A training that goes on with a run's controller on hardware that is fixed now.
+pub struct Tuning {
+    /// Its experiment: the run's, with the design fixed and every schedule at its end.
+    pub assembly: Assembly,
+    start: Checkpoint,
+}
+
+/// What there is in the folder of such a training.
+pub enum TuningFolder {
+    /// All of it: what it came to.
+    Finished(Vec<f32>),
+    /// Nothing or a part of it, and what to go on from.
+    Open(Box<RunFolder>, Box<Checkpoint>),
+}
+
+impl Tuning {
+    /// Of a run's `params` on the hardware of `built`, SI, for so many steps; its result is judged on `asked` episodes from
+    /// this seed.
+    pub fn new(
+        run: &Assembly,
+        params: &[f32],
+        built: &[f64; DESIGN_LEN],
+        env_steps: u64,
+        asked: (u64, u64),
+    ) -> Result<Self, PartsError> {
+        let rows = run.spec().train.rows() as u64;
+        if env_steps < rows {
+            return Err(PartsError::ShortTuning { env_steps, rows });
+        }
+        let assembly = Assembly::new(&experiment(run, params, built, env_steps, asked))?;
+        // The controller comes first in both; the noise of the commands is in the experiment.
+        let mut start = assembly.init();
+        let controller = run.policy.controller_params(params);
+        start[..controller.len()].copy_from_slice(controller);
+        let start = beginning(&assembly, start).map_err(Box::new)?;
+        Ok(Self { assembly, start })
+    }
+
+    /// Its folder: taken up where the same training is there already.
+    pub fn folder(&self, path: &Path, provenance: Provenance) -> Result<TuningFolder, RunError> {
+        let spec = self.assembly.spec();
+        let (mut folder, from) = if path.join(EXPERIMENT).is_file() {
+            if saved_spec(path, &[])? != *spec {
+                return Err(RunError::Exists { path: path.to_owned() });
+            }
+            if path.join(SUMMARY).is_file() {
+                return Ok(TuningFolder::Finished(SavedRun::open(path)?.params()?));
+            }
+            let Resumed { folder, found } = RunFolder::resume(path, spec, provenance, Keeping::default())?;
+            found.warn();
+            (folder, found.checkpoint)
+        } else {
+            (RunFolder::create(path, spec, &provenance, Keeping::default())?, None)
+        };
+        let from = from.unwrap_or_else(|| self.start.clone());
+        // It begins with what no experiment file says: from the first moment on, that is in its folder.
+        folder.keep(&from)?;
+        Ok(TuningFolder::Open(Box::new(folder), Box::new(from)))
+    }
+}
+
+fn experiment(
+    run: &Assembly,
+    params: &[f32],
+    built: &[f64; DESIGN_LEN],
+    env_steps: u64,
+    (episodes, seed): (u64, u64),
+) -> Spec {
+    let mut spec = run.spec().clone();
+    spec.description = format!(
+        "The controller of {} ({}, seed {}) trained further on parts.",
+        spec.name,
+        spec.method.name(),
+        spec.seed
+    );
+    spec.method = Method::Fixed;
+    spec.design.initial = InitialSpec::at(&spec.task.groups(), built);
+    spec.design.placement = Place::Fixed;
+    spec.design.placements.clear();
+    spec.noise.command = PerCommand(last_noise(run, params));
+    (spec.noise.command_final, spec.noise.effort, spec.noise.effort_final) = (None, None, None);
+    if let Problem::ZGrasp(task) | Problem::SpatialGrasp(task) = &mut spec.task.problem {
+        (task.safety_growth, task.offset_initial) = ([0.0; 2], None);
+    }
+    spec.train.env_steps = env_steps;
+    (spec.train.evaluation_episodes, spec.train.evaluation_seed) = (episodes as usize, seed);
+    spec
+}
+
+/// Standard deviations of the commands at the end of a run, as fractions of their ranges.
+fn last_noise(run: &Assembly, params: &[f32]) -> Vec<f64> {
+    let mut log_std = vec![0.0; run.policy.action_dim()];
+    run.policy.log_std(params, 1.0, &mut log_std);
+    let environment = run.problem.training.make.make(None);
+    let commands = &environment.spec().command;
+    // The commands are the last components of an action.
+    let last = log_std[log_std.len() - commands.len()..].iter().zip(commands);
+    last.map(|(log_std, port)| (f64::from(*log_std).exp() / (port.hi - port.lo)).clamp(1e-6, 10.0)).collect()
+}

@@ -1,0 +1,142 @@
+//! How far off each design parameter may be made.
+
+use hwasp_core::{DesignSpace, Dimension, parse_quantity};
+use hwasp_training::spec::nearest;
+use thiserror::Error;
+
+/// The error of a parameter that nothing is said of.
+const ANY: &str = "5 %";
+/// Those of a hand: springs as they are sold, pulleys as they are printed, and half the way between two holes 15° apart.
+const HAND: [(&str, &str); 3] = [("radius", "0.1 mm"), ("stiffness", "5 %"), ("preload", "0.13 rad")];
+
+/// The manufacturing error of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ManufacturingError {
+    /// To either side, SI.
+    pub size: f64,
+    /// As it was given: `5 %`, `0.1 mm`.
+    pub text: String,
+}
+
+/// Why an error cannot be had.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("--error {given}: {message}\n  = hint: {hint}")]
+pub struct ManufacturingErrorFault {
+    given: String,
+    message: String,
+    hint: String,
+}
+
+/// An error for each parameter of a `design` (SI), in its order. Of the `given` ones, `radius=0.1 mm`, one that names a
+/// parameter goes before one that names its group, that before one for all of a quantity, and a later one before an earlier.
+pub fn manufacturing_errors(
+    space: &DesignSpace,
+    design: &[f64],
+    is_hand: bool,
+    given: &[String],
+) -> Result<Vec<ManufacturingError>, ManufacturingErrorFault> {
+    let parameters = parameters(space);
+    let given = given.iter().map(|given| assignment(given, &parameters)).collect::<Result<Vec<_>, _>>()?;
+    let common = HAND.iter().filter(|_| is_hand);
+    let common = common.map(|&(key, value)| Assignment { given: format!("{key}={value}"), key, value });
+    let any = |parameter: &Parameter| Assignment { given: format!("{}={ANY}", parameter.name), key: "", value: ANY };
+    parameters
+        .iter()
+        .zip(design)
+        .map(|(parameter, &nominal)| {
+            let chosen = (given.iter().filter_map(|a| Some((parameter.rank(a.key)?, a.clone()))))
+                // The last of the greatest.
+                .max_by_key(|(rank, _)| *rank)
+                .map(|(_, assignment)| assignment);
+            let chosen = chosen.or_else(|| common.clone().find(|a| parameter.rank(a.key).is_some()));
+            chosen.unwrap_or_else(|| any(parameter)).size(parameter, nominal)
+        })
+        .collect()
+}
+
+/// `radius=0.1 mm`, taken apart.
+#[derive(Clone, Debug)]
+struct Assignment<'a> {
+    given: String,
+    key: &'a str,
+    value: &'a str,
+}
+
+fn assignment<'a>(given: &'a str, parameters: &[Parameter]) -> Result<Assignment<'a>, ManufacturingErrorFault> {
+    let fault = |message: String, hint: String| ManufacturingErrorFault { given: given.to_owned(), message, hint };
+    let (key, value) = given.split_once('=').ok_or_else(|| {
+        fault("it has no `=`".into(), format!("write it as NAME=SIZE, {}=\"5 %\" for example", parameters[0].group))
+    })?;
+    let (key, value) = (key.trim(), value.trim().trim_matches('"'));
+    if !parameters.iter().any(|parameter| parameter.rank(key).is_some()) {
+        let mut names: Vec<&str> = Vec::new();
+        for name in parameters.iter().flat_map(|p| [p.quantity.as_str(), p.group.as_str()]) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let near = nearest(key, names.iter().copied());
+        let hint = near.map_or(format!("there are {}", names.join(", ")), |near| format!("did you mean `{near}`?"));
+        return Err(fault(format!("`{key}` is no parameter of this design"), hint));
+    }
+    Ok(Assignment { given: given.to_owned(), key, value })
+}
+
+/// What a parameter can be called.
+struct Parameter {
+    /// `stiffness[3]`, `thumb_distal_radius`.
+    name: String,
+    /// `stiffness`, `thumb_distal_radius`.
+    group: String,
+    /// The last word of the group: `stiffness`, `radius`.
+    quantity: String,
+    dimension: Dimension,
+    /// How far its limits are apart.
+    width: f64,
+}
+
+fn parameters(space: &DesignSpace) -> Vec<Parameter> {
+    let groups = space.groups().iter().flat_map(|group| std::iter::repeat_n(group, group.count));
+    let parameter = |(name, group): (String, &hwasp_core::DesignGroup)| Parameter {
+        name,
+        group: group.name.clone(),
+        quantity: group.name.rsplit('_').next().unwrap_or_default().to_owned(),
+        dimension: group.dimension,
+        width: group.hi - group.lo,
+    };
+    space.names().into_iter().zip(groups).map(parameter).collect()
+}
+
+impl Parameter {
+    /// How closely a name is this parameter's; none if it is not.
+    fn rank(&self, key: &str) -> Option<u8> {
+        [&self.quantity, &self.group, &self.name].iter().rposition(|name| *name == key).map(|rank| rank as u8)
+    }
+}
+
+impl Assignment<'_> {
+    fn size(&self, parameter: &Parameter, nominal: f64) -> Result<ManufacturingError, ManufacturingErrorFault> {
+        let fault =
+            |message: String, hint: String| ManufacturingErrorFault { given: self.given.clone(), message, hint };
+        let Parameter { name, dimension, width, .. } = parameter;
+        let example = format!("write a share such as \"5 %\", or a quantity in {}", dimension.symbols().join(", "));
+        let size = if let Some(percent) = self.value.strip_suffix('%') {
+            let percent = percent.trim().parse().ok().filter(|percent| (0.0..=100.0).contains(percent));
+            let percent: f64 =
+                percent.ok_or_else(|| fault(format!("`{}` is no share from 0 to 100 %", self.value), example))?;
+            0.01 * percent * nominal.abs()
+        } else {
+            parse_quantity(self.value, *dimension).map_err(|error| fault(error.to_string(), example))?
+        };
+        // Of a parameter that is 0, a share is nothing.
+        if !(size > 0.0 && size <= *width) {
+            return Err(fault(
+                format!("{size} {} is no error of {name}, which is {nominal}", dimension.si()).replace("  ", " "),
+                format!("it has to be above 0 and at most as wide as the limits, {width} {}", dimension.si())
+                    .trim_end()
+                    .to_owned(),
+            ));
+        }
+        Ok(ManufacturingError { size, text: self.value.to_owned() })
+    }
+}

@@ -6,7 +6,7 @@ use rand::RngExt;
 
 use crate::design::DesignSpace;
 use crate::environment::{End, EnvSpec, Environment, MakeEnvironment};
-use crate::hardware::Law;
+use crate::law::Law;
 use crate::streams::{Purpose, stream};
 
 pub use fault::EnvFault;

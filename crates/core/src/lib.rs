@@ -10,6 +10,7 @@ mod environment;
 mod executor;
 pub mod gaussian;
 mod hardware;
+mod law;
 mod placement;
 mod policy;
 mod rollout;
@@ -22,7 +23,8 @@ pub use environment::{
     CommandPort, End, EnvSpec, Environment, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,
 };
 pub use executor::{Executor, Serial, Threads};
-pub use hardware::{Hardware, Law, Ports};
+pub use hardware::{Hardware, Ports};
+pub use law::{Law, LawError};
 pub use placement::{Placement, PlacementError};
 pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows, Spread};
 pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};

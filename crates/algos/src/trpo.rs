@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Executor, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, Executor, ParamKind, Policy, Purpose, gaussian, stream};
 
 pub use self::cg::{Solution, conjugate_gradient};
 pub use self::config::{FisherRows, TrpoConfig, TrpoSettings};
@@ -65,7 +65,7 @@ impl<P: Policy> Trpo<P> {
 impl<P: Policy> TrustRegion<P> {
     fn new(config: TrpoConfig, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
         let mut unit = vec![1.0; params.len()];
-        for group in policy.groups().iter().filter(|group| group.name == "design") {
+        for group in policy.groups().iter().filter(|group| group.kind == ParamKind::Design) {
             unit[group.range.clone()].fill(config.design_scale);
         }
         Self {

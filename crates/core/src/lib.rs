@@ -26,7 +26,9 @@ pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Ports};
 pub use law::{Law, LawError};
 pub use placement::{Placement, PlacementError};
-pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows, Spread};
+pub use policy::{
+    Actor, Anneal, HardwarePolicy, Noise, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows, Spread,
+};
 pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

@@ -20,7 +20,7 @@ use serde_json::json;
 fn write(folder: &Path, assembly: &Assembly, batch: &Batch) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
     let (policy, transmission) = (&assembly.policy, assembly.grasp(None)?.settings().hand.transmission.clone());
-    let groups = policy.groups().iter().map(|group| (group.name, [group.range.start, group.range.end]));
+    let groups = policy.groups().iter().map(|group| (group.kind.name(), [group.range.start, group.range.end]));
     let limits = |(lo, hi)| [lo, hi];
     let about = json!({
         "controller": policy.controller().sizes(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, ParamKind, Policy, Purpose, gaussian, stream};
 use rand::seq::SliceRandom;
 
 use super::PpoConfig;
@@ -62,10 +62,10 @@ impl<P: Policy> Optimiser<P> {
         let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
         let mut rates = vec![rate as f32; self.params.len()];
         for group in self.policy.groups() {
-            let scale = match group.name {
-                "design" => config.design_lr_scale,
-                "log_std" => config.log_std_lr_scale,
-                _ => 1.0,
+            let scale = match group.kind {
+                ParamKind::Controller => 1.0,
+                ParamKind::Design => config.design_lr_scale,
+                ParamKind::LogStd => config.log_std_lr_scale,
             };
             rates[group.range.clone()].fill((rate * scale) as f32);
         }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hwasp_core::{End, Episode, ParamGroup, Rows, Serial, gaussian};
+use hwasp_core::{End, Episode, ParamGroup, ParamKind, Rows, Serial, gaussian};
 
 use super::optimiser::Totals;
 use super::*;
@@ -12,7 +12,10 @@ struct Line([ParamGroup; 2]);
 
 impl Line {
     fn new() -> Arc<Self> {
-        Arc::new(Self([ParamGroup { name: "design", range: 0..1 }, ParamGroup { name: "log_std", range: 1..2 }]))
+        Arc::new(Self([
+            ParamGroup { kind: ParamKind::Design, range: 0..1 },
+            ParamGroup { kind: ParamKind::LogStd, range: 1..2 },
+        ]))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Environments: a plant (physics) with a task (purpose).
 
+use std::sync::Arc;
+
 use crate::streams::Stream;
 use crate::units::Dimension;
 
@@ -15,10 +17,11 @@ pub enum End {
 }
 
 /// Whether an episode did what the task is about, for tasks that can be failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// What kind of episode it was, the object's shape for one: success is told for each kind.
-    pub kind: &'static str,
+    /// What kind of episode it was, the object's shape for one: success is told for each kind. A task keeps the names that
+    /// it gives, so that telling one copies no text.
+    pub kind: Arc<str>,
     /// Whether it succeeded.
     pub success: bool,
 }

@@ -91,8 +91,8 @@ fn is_zero(count: &u64) -> bool {
 /// Over all episodes, then kind by kind in the order of their names; empty where the task knows no success.
 fn success_rates(batch: &Batch) -> Vec<SuccessRate> {
     let mut kinds: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
-    for outcome in batch.episodes.iter().filter_map(|e| e.outcome) {
-        let (successes, episodes) = kinds.entry(outcome.kind).or_default();
+    for outcome in batch.episodes.iter().filter_map(|e| e.outcome.as_ref()) {
+        let (successes, episodes) = kinds.entry(&*outcome.kind).or_default();
         *successes += u64::from(outcome.success);
         *episodes += 1;
     }

@@ -77,7 +77,7 @@ struct Trial {
 fn trials(batch: &Batch, asked: u64) -> Vec<Option<Trial>> {
     let mut done = batch.returns(1.0).into_iter().zip(&batch.episodes).map(|(undiscounted_return, episode)| Trial {
         undiscounted_return,
-        success: episode.outcome.map(|outcome| outcome.success),
+        success: episode.outcome.as_ref().map(|outcome| outcome.success),
     });
     let failed = |index| batch.faults.iter().any(|fault| fault.episode == index);
     (0..asked).map(|index| if failed(index) { None } else { done.next() }).collect()

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use hwasp_core::{Batch, ParamKind, Policy, Purpose, gaussian, stream};
 use rand::seq::SliceRandom;
 
-use super::PpoConfig;
+use super::{METRICS, PpoConfig};
 use crate::adam::{Adam, AdamConfig, clip_norm};
-use crate::learner::{LearnError, UpdateMetrics};
+use crate::learner::LearnError;
+use crate::metrics::Metrics;
 use crate::minibatch::{BLOCK, Minibatch};
 use crate::surrogate::Surrogate;
 
@@ -83,15 +84,15 @@ impl<P: Policy> Optimiser<P> {
         advantage: &[f32],
         progress: f64,
         iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
+    ) -> Result<Metrics, LearnError> {
         let rates = self.learning_rates(progress);
         let rows = batch.rows();
         let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
         let size = if whole { rows } else { self.config.minibatch_rows };
         let mut order: Vec<u32> = (0..rows as u32).collect();
         let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
-        let mut metrics = UpdateMetrics::default();
-        let mut steps = 0;
+        let (mut kl, mut clip_fraction, mut norms) = (0.0, 0.0, 0.0);
+        let (mut steps, mut epochs) = (0, 0);
         for epoch in 0..self.config.epochs {
             if !whole {
                 order.shuffle(&mut shuffle);
@@ -104,9 +105,9 @@ impl<P: Policy> Optimiser<P> {
                     self.step.minibatch.gather(batch, advantage, indices, dims);
                 }
                 let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
-                metrics.grad_norm += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
+                norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
                 steps += 1;
-                if !metrics.grad_norm.is_finite() {
+                if !f64::is_finite(norms) {
                     return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
                 }
                 self.adam.step(&mut self.params, &self.step.gradient, &rates);
@@ -115,18 +116,19 @@ impl<P: Policy> Optimiser<P> {
                 epoch_totals.rows += totals.rows;
             }
             let n = epoch_totals.rows.max(1) as f64;
-            metrics.kl = epoch_totals.kl / n;
-            metrics.clip_fraction = epoch_totals.clipped / n;
-            metrics.epochs = epoch + 1;
-            if self.config.target_kl.is_some_and(|limit| metrics.kl > 1.5 * limit) {
+            (kl, clip_fraction) = (epoch_totals.kl / n, epoch_totals.clipped / n);
+            epochs = epoch + 1;
+            if self.config.target_kl.is_some_and(|limit| kl > 1.5 * limit) {
                 break;
             }
         }
-        metrics.grad_norm /= f64::from(steps).max(1.0);
+        let grad_norm = norms / f64::from(steps).max(1.0);
         self.policy.log_std(&self.params, progress, &mut self.step.log_std);
-        metrics.entropy = gaussian::entropy(&self.step.log_std);
-        let sound = self.params.iter().all(|p| p.is_finite());
-        sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+        if !self.params.iter().all(|p| p.is_finite()) {
+            return Err(LearnError::NotFinite { what: "a parameter", iteration });
+        }
+        let entropy = gaussian::entropy(&self.step.log_std);
+        Ok(Metrics::new(METRICS, vec![kl, entropy, clip_fraction, grad_norm, epochs as f64]))
     }
 }
 

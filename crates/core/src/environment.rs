@@ -113,7 +113,7 @@ pub trait Task: Send {
     /// The reward of having arrived at this state under `command`; called once a step, so that a task may keep count.
     fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
-    /// Whether this state has no future.
+    /// Whether this state has no future; asked after [`reward`](Self::reward), so that what it has counted is known.
     fn terminated(&self, _plant: &Self::Plant) -> bool {
         false
     }
@@ -225,6 +225,7 @@ impl<T: Task> Environment for Robot<T> {
         if self.plant.fault().is_some() {
             return Step { reward: 0.0, end: Some(End::Faulted) };
         }
+        let reward = self.task.reward(&self.plant, &self.limited);
         let end = if self.task.terminated(&self.plant) {
             Some(End::Terminated)
         } else if self.taken >= self.spec.horizon {
@@ -232,7 +233,7 @@ impl<T: Task> Environment for Robot<T> {
         } else {
             None
         };
-        Step { reward: self.task.reward(&self.plant, &self.limited), end }
+        Step { reward, end }
     }
 
     fn outcome(&self) -> Option<Outcome> {

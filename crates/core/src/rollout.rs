@@ -166,7 +166,8 @@ impl Sampler {
     /// Runs the episodes and returns them in the order of their indices.
     ///
     /// # Errors
-    /// Where a reward or a log-probability is no number, or where the physics failed in every episode; the first of them is told.
+    /// Where a reward or a log-probability is no number, or where the physics failed in every episode. Told is the one with
+    /// the lowest index, whatever the number of workers.
     pub fn collect(&self, executor: &dyn Executor, params: &[f32], episodes: &Episodes) -> Result<Batch, RolloutError> {
         let count = (episodes.indices.end - episodes.indices.start) as usize;
         let lanes = count.div_ceil(executor.workers()).clamp(1, LANES);
@@ -268,9 +269,13 @@ impl<'p> Lanes<'p> {
         // The law reads columns, the plant's law a row.
         let mut columns = vec![0.0; state_dim * count];
         let mut states = vec![0.0; count * state_dim];
+        // The failed episode with the lowest index, which is the one that is told whatever other lanes there are: those
+        // above it need not go on, those below may still fail.
+        let mut failed = None;
+        let mut lanes = count;
         for step in 0..self.horizon {
             let mut running = false;
-            for e in 0..count {
+            for e in 0..lanes {
                 if self.ends[e].is_some() {
                     continue;
                 }
@@ -288,7 +293,7 @@ impl<'p> Lanes<'p> {
                 break;
             }
             actor.act(&obs, &columns, count, self.noisy.then_some(&mut self.noise[..]));
-            for e in 0..count {
+            for e in 0..lanes {
                 if self.ends[e].is_some() {
                     continue;
                 }
@@ -316,11 +321,17 @@ impl<'p> Lanes<'p> {
                     what,
                 };
                 // What is no number in an observation or an action shows here, too.
-                if !log_prob.is_finite() {
-                    return Err(error(format!("the log-probability of the action is {log_prob}")));
-                }
-                if !result.reward.is_finite() {
-                    return Err(error(format!("the reward is {}", result.reward)));
+                let not_finite = if !log_prob.is_finite() {
+                    Some(format!("the log-probability of the action is {log_prob}"))
+                } else if !result.reward.is_finite() {
+                    Some(format!("the reward is {}", result.reward))
+                } else {
+                    None
+                };
+                if let Some(what) = not_finite {
+                    failed = Some(error(what));
+                    lanes = e;
+                    break;
                 }
                 if let Some(end) = result.end {
                     if end == End::Faulted {
@@ -331,7 +342,7 @@ impl<'p> Lanes<'p> {
                 }
             }
         }
-        Ok(())
+        failed.map_or(Ok(()), Err)
     }
 
     /// Closes the gaps that early ends and discarded episodes have left.

@@ -96,6 +96,8 @@ enum Habit {
     EndsEarly,
     /// Gives no number as reward in step 4 where it started above a half.
     LosesReward,
+    /// The same, but later the earlier it started: in the last step where it started at a half.
+    LosesRewardLate,
     /// Its physics fail there.
     Faults,
 }
@@ -161,6 +163,10 @@ impl Environment for Clock {
         let (reward, end) = match self.habit {
             Habit::Faults => (1.0, bad.then_some(End::Faulted)),
             Habit::LosesReward => (if bad { f64::NAN } else { 1.0 }, None),
+            Habit::LosesRewardLate => {
+                let lost = self.start > 0.5 && self.taken == HORIZON - (16.0 * (self.start - 0.5)) as usize;
+                (if lost { f64::NAN } else { 1.0 }, None)
+            }
             Habit::EndsEarly => {
                 let over = self.taken == Self::length(self.start);
                 (self.start + self.taken as f64, over.then_some(End::Terminated))
@@ -264,6 +270,26 @@ fn a_reward_that_is_no_number_is_named() {
         // The environments are good for the next batch.
         let batch = sampler.collect(executor, &params, &episodes(first..first + 1, EpisodeKind::Training)).unwrap();
         assert_eq!(batch.reward, [1.0; HORIZON]);
+    }
+}
+
+/// Which of two failing episodes was told depended on the number of threads: in one job the first in time, in several jobs
+/// the first by index. Here the later episode fails in an earlier step, and both are lanes of the same job on one thread.
+#[test]
+fn the_first_failing_episode_is_told_for_any_number_of_workers() {
+    let (sampler, params) = sampler(Habit::LosesRewardLate);
+    let step = |episode| HORIZON - (16.0 * (start(7, 3, episode) - 0.5)) as usize - 1;
+    let fails = |episode: &u64| start(7, 3, *episode) > 0.5;
+    // Ten episodes, the first of which fails after another one of them.
+    let from = (0..1000).find(|&from| {
+        let failing: Vec<u64> = (from..from + 10).filter(fails).collect();
+        failing.len() >= 2 && failing[0] > from && failing[1..].iter().any(|&other| step(other) < step(failing[0]))
+    });
+    let from = from.unwrap();
+    let first = (from..).find(fails).unwrap();
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap(), &Threads::new(5).unwrap()] {
+        let error = sampler.collect(executor, &params, &episodes(from..from + 10, EpisodeKind::Training)).unwrap_err();
+        assert_eq!((error.episode, error.step), (first, step(first)), "{} workers", executor.workers());
     }
 }
 

@@ -130,6 +130,10 @@ impl Law {
     /// # Errors
     /// Where there is not one start for each group, or a start is outside of its group's limits.
     pub fn beginning(mut self, initial: &[Initial]) -> Result<Self, DesignError> {
+        let (given, needed) = (initial.len(), self.design.groups().len());
+        if given != needed {
+            return Err(DesignError::Starts { given, needed });
+        }
         let groups = self.design.groups().iter().zip(initial);
         self.design = DesignSpace::new(groups.map(|(g, &initial)| DesignGroup { initial, ..g.clone() }).collect())?;
         Ok(self)

@@ -7,7 +7,7 @@ mod common;
 use std::sync::Arc;
 
 use allocation_counter::measure;
-use hwasp_core::{DesignSpace, EpisodeKind, Episodes, HardwarePolicy, Law, Ports, Sampler, Serial, Threads};
+use hwasp_core::{DesignSpace, EpisodeKind, Episodes, HardwarePolicy, Initial, Law, Ports, Sampler, Serial, Threads};
 use hwasp_diff::Program;
 
 /// The winch as a program and nothing else.
@@ -125,4 +125,16 @@ fn a_law_without_a_design_is_a_law() {
     let mut force = [0.0];
     law.effort(&[], &[3.0], &[1.0], &mut force);
     assert_eq!(force, [2.0]);
+}
+
+/// Fewer starts than groups dropped the other groups of the design without a word.
+#[test]
+fn a_law_begins_with_one_start_per_group() {
+    let one = Initial::Value(2.0);
+    let law = winch().beginning(&[one, Initial::Value(5.0)]).unwrap();
+    assert_eq!(law.design().groups().iter().map(|g| g.initial).collect::<Vec<_>>(), [one, Initial::Value(5.0)]);
+    for given in [0, 1, 3] {
+        let refused = law.clone().beginning(&vec![one; given]).unwrap_err();
+        assert_eq!(refused.to_string(), format!("{given} starts for 2 groups of design parameters"));
+    }
 }

@@ -1,7 +1,7 @@
 //! Rollouts: whole episodes by index, in lock step, over any number of threads with the same bits.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use thiserror::Error;
 
@@ -191,9 +191,13 @@ impl Sampler {
         }
     }
 
+    fn idle(&self) -> MutexGuard<'_, Vec<Box<dyn Environment>>> {
+        self.idle.lock().expect("nothing panics while the list is locked")
+    }
+
     /// Takes an idle environment or makes one.
     fn environment(&self) -> Box<dyn Environment> {
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let idle = self.idle().pop();
         idle.unwrap_or_else(|| self.make.make(self.horizon))
     }
 
@@ -204,7 +208,7 @@ impl Sampler {
         let mut lanes = Lanes::new(&self.policy, environments, episodes);
         let mut actor = Actor::new(&self.policy, params, episodes.progress, count);
         let result = lanes.run(&mut actor, episodes).map(|()| lanes.finish());
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).append(&mut lanes.environments);
+        self.idle().append(&mut lanes.environments);
         result
     }
 }

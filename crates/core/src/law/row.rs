@@ -41,7 +41,7 @@ impl RowRunner {
     }
 
     fn idle(&self) -> std::sync::MutexGuard<'_, Vec<Memory>> {
-        self.idle.lock().expect("nothing that could panic is done while the list is locked")
+        self.idle.lock().expect("nothing panics while the list is locked")
     }
 }
 

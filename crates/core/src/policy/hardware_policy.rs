@@ -132,7 +132,8 @@ impl HardwarePolicy {
 
     /// Where the parameters of a kind lie; empty where there are none.
     pub(super) fn range(&self, kind: ParamKind) -> Range<usize> {
-        self.groups.iter().find(|g| g.kind == kind).map_or(0..0, |g| g.range.clone())
+        let group = self.groups.iter().find(|g| g.kind == kind);
+        group.expect("a policy has a group of every kind, if an empty one").range.clone()
     }
 
     pub(crate) fn body(&self) -> Body {

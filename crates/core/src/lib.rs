@@ -14,6 +14,7 @@ mod law;
 mod placement;
 mod policy;
 mod rollout;
+mod schedule;
 mod streams;
 mod units;
 
@@ -30,5 +31,6 @@ pub use policy::{
     Actor, Anneal, HardwarePolicy, Noise, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows, Spread,
 };
 pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
+pub use schedule::share_done;
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

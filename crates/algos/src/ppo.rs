@@ -22,7 +22,7 @@ use crate::metrics::Metrics;
 /// | `gae_lambda` | 0.95 | λ of the advantages |
 /// | `clip_ratio` | 0.2 | ε of the clipped surrogate |
 /// | `epochs` | 4 | passes over a batch |
-/// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
+/// | `minibatch_rows` | 1000 | rows of a gradient step at most, the same for all steps but for one row; 0 for the whole batch |
 /// | `learning_rate` | 1e-3 | of Adam |
 /// | `learning_rate_final` | 1 | fraction of it left at the end of a linear decay |
 /// | `design_lr_scale` | 1 | times the rate, for design parameters |
@@ -42,7 +42,7 @@ pub struct PpoConfig {
     pub clip_ratio: f64,
     /// Passes over a batch.
     pub epochs: usize,
-    /// Rows of a gradient step; 0 for the whole batch.
+    /// Rows of a gradient step at most: a batch is divided evenly. 0 for the whole batch.
     pub minibatch_rows: usize,
     /// Step size of Adam at the start.
     pub learning_rate: f64,

@@ -9,7 +9,7 @@ use super::{METRICS, PpoConfig};
 use crate::adam::{Adam, AdamConfig, clip_norm};
 use crate::learner::LearnError;
 use crate::metrics::Metrics;
-use crate::minibatch::{BLOCK, Minibatch};
+use crate::minibatch::{BLOCK, Minibatch, minibatches};
 use crate::surrogate::Surrogate;
 
 /// A policy's parameters and their optimiser.
@@ -87,8 +87,8 @@ impl<P: Policy> Optimiser<P> {
     ) -> Result<Metrics, LearnError> {
         let rates = self.learning_rates(progress);
         let rows = batch.rows();
-        let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
-        let size = if whole { rows } else { self.config.minibatch_rows };
+        let size = self.config.minibatch_rows;
+        let whole = size == 0 || size >= rows;
         let mut order: Vec<u32> = (0..rows as u32).collect();
         let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
         let (mut kl, mut clip_fraction, mut norms) = (0.0, 0.0, 0.0);
@@ -98,7 +98,7 @@ impl<P: Policy> Optimiser<P> {
                 order.shuffle(&mut shuffle);
             }
             let mut epoch_totals = Totals::default();
-            for indices in order.chunks(size.max(1)) {
+            for indices in minibatches(&order, size) {
                 // The whole batch in its own order needs gathering but once.
                 if !whole || epoch == 0 {
                     let dims = self.dims();

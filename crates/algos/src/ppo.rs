@@ -11,7 +11,8 @@ use self::optimiser::Optimiser;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, BaselineConfig, Shown};
 use crate::gae::AdvantageConfig;
-use crate::learner::{LearnError, Learner, UpdateMetrics};
+use crate::learner::{LearnError, Learner};
+use crate::metrics::Metrics;
 
 /// Settings of [`Ppo`].
 ///
@@ -21,7 +22,7 @@ use crate::learner::{LearnError, Learner, UpdateMetrics};
 /// | `gae_lambda` | 0.95 | λ of the advantages |
 /// | `clip_ratio` | 0.2 | ε of the clipped surrogate |
 /// | `epochs` | 4 | passes over a batch |
-/// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
+/// | `minibatch_rows` | 1000 | rows of a gradient step at most, the same for all steps but for one row; 0 for the whole batch |
 /// | `learning_rate` | 1e-3 | of Adam |
 /// | `learning_rate_final` | 1 | fraction of it left at the end of a linear decay |
 /// | `design_lr_scale` | 1 | times the rate, for design parameters |
@@ -41,7 +42,7 @@ pub struct PpoConfig {
     pub clip_ratio: f64,
     /// Passes over a batch.
     pub epochs: usize,
-    /// Rows of a gradient step; 0 for the whole batch.
+    /// Rows of a gradient step at most: a batch is divided evenly. 0 for the whole batch.
     pub minibatch_rows: usize,
     /// Step size of Adam at the start.
     pub learning_rate: f64,
@@ -108,7 +109,18 @@ pub struct PpoSettings {
     pub baseline: BaselineConfig,
 }
 
+/// What an update of [`Ppo`] tells.
+const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epochs"];
+
 /// The learner: a policy's parameters, their optimiser and a baseline.
+///
+/// | metric | meaning |
+/// |---|---|
+/// | `kl` | KL divergence from the policy that acted, nats: an estimate, the mean over the rows of the last epoch, each taken before its gradient step |
+/// | `entropy` | entropy of the action distribution after the update, nats |
+/// | `clip_fraction` | share of rows in the last epoch whose ratio was clipped |
+/// | `grad_norm` | mean norm of the policy gradient before clipping |
+/// | `epochs` | epochs done; fewer than asked for where the KL limit stopped them |
 pub struct Ppo<P: Policy> {
     optimiser: Optimiser<P>,
     baseline: Baseline,
@@ -127,13 +139,17 @@ impl<P: Policy> Learner for Ppo<P> {
         &self.optimiser.params
     }
 
+    fn metric_names(&self) -> &'static [&'static str] {
+        METRICS
+    }
+
     fn update(
         &mut self,
         executor: &dyn Executor,
         batch: &Batch,
         progress: f64,
         iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
+    ) -> Result<Metrics, LearnError> {
         let Self { optimiser, baseline } = self;
         let targets = baseline.targets(batch, &optimiser.config.advantages(), iteration)?;
         let before = (optimiser.params.clone(), optimiser.adam.clone());

@@ -83,6 +83,37 @@ pub enum SearchError {
     },
 }
 
+/// Lower and upper limit of coordinate `i`; infinite where there is none.
+fn limits(lower: Option<&[f64]>, upper: Option<&[f64]>, i: usize) -> (f64, f64) {
+    (lower.map_or(f64::NEG_INFINITY, |b| b[i]), upper.map_or(f64::INFINITY, |b| b[i]))
+}
+
+/// Whether there are limits for each coordinate of a search's start, with room between them.
+fn check_limits(lower: Option<&[f64]>, upper: Option<&[f64]>, dimension: usize) -> Result<(), SearchError> {
+    let setting = |name, value, limits| Err(SearchError::Setting { name, value, limits });
+    for (name, bound) in [("lower", lower), ("upper", upper)] {
+        if let Some(bound) = bound
+            && bound.len() != dimension
+        {
+            return setting(name, bound.len() as f64, "as long as the mean");
+        }
+    }
+    for i in 0..dimension {
+        let (lower, upper) = limits(lower, upper, i);
+        // A width that overflows leaves no arithmetic inside.
+        if lower.is_finite() && upper.is_finite() && !((upper - lower).is_finite() && lower < upper) {
+            return setting("upper", upper, "above the lower bound, at a finite distance");
+        }
+        if lower.is_nan() || lower == f64::INFINITY {
+            return setting("lower", lower, "a number or -inf");
+        }
+        if upper.is_nan() || upper == f64::NEG_INFINITY {
+            return setting("upper", upper, "a number or inf");
+        }
+    }
+    Ok(())
+}
+
 /// Scores with every failure as negative infinity; an error where they are too few or too many, or all failed.
 fn failed_last(scores: &[f64], expected: usize, generation: u64) -> Result<Vec<f64>, SearchError> {
     if scores.len() != expected {

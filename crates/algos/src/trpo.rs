@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Executor, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, Executor, ParamKind, Policy, Purpose, gaussian, stream};
 
 pub use self::cg::{Solution, conjugate_gradient};
 pub use self::config::{FisherRows, TrpoConfig, TrpoSettings};
@@ -20,17 +20,31 @@ use self::line_search::backtrack;
 use self::passes::Passes;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, Shown};
-use crate::learner::{LearnError, Learner, TrustRegionMetrics, UpdateMetrics};
+use crate::learner::{LearnError, Learner};
+use crate::metrics::Metrics;
 use crate::minibatch::Minibatch;
 
 /// Keeps the length of a step finite where nothing curves, as the paper's toolkit has it.
 const LEAST_CURVATURE: f64 = 1e-8;
+
+/// What an update of [`Trpo`] tells.
+const METRICS: &[&str] = &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected"];
 
 /// The learner: a policy's parameters and a baseline.
 ///
 /// An update is one step: minimise -mean(ρ·A) under mean KL(old || new) ≤ `max_kl` (14). Its direction is H⁻¹g with g the
 /// gradient of the objective and H the curvature of the divergence, its length √(2·`max_kl`/xᵀHx), shortened until it
 /// holds what it promises.
+///
+/// | metric | meaning |
+/// |---|---|
+/// | `kl` | KL divergence from the policy that acted, nats: exact, over all rows, after the update |
+/// | `entropy` | entropy of the action distribution after the update, nats |
+/// | `step_fraction` | share of the full step that was taken; 0 where none was |
+/// | `gain` | what the step gained in the surrogate objective, the mean of ρ·A |
+/// | `cg_iterations` | iterations of conjugate gradients |
+/// | `tried` | steps that the line search tried |
+/// | `rejected` | updates so far that took no step |
 pub struct Trpo<P: Policy> {
     region: TrustRegion<P>,
     baseline: Baseline,
@@ -65,7 +79,7 @@ impl<P: Policy> Trpo<P> {
 impl<P: Policy> TrustRegion<P> {
     fn new(config: TrpoConfig, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
         let mut unit = vec![1.0; params.len()];
-        for group in policy.groups().iter().filter(|group| group.name == "design") {
+        for group in policy.groups().iter().filter(|group| group.kind == ParamKind::Design) {
             unit[group.range.clone()].fill(config.design_scale);
         }
         Self {
@@ -96,7 +110,7 @@ impl<P: Policy> TrustRegion<P> {
     }
 
     /// One step from the gathered batch, left in `candidate`; where none is found that is the present parameters.
-    fn step(&mut self, executor: &dyn Executor, progress: f64, iteration: u64) -> Result<UpdateMetrics, LearnError> {
+    fn step(&mut self, executor: &dyn Executor, progress: f64, iteration: u64) -> Result<Metrics, LearnError> {
         let not_finite = |what| LearnError::NotFinite { what, iteration };
         let rows = self.batch.count;
         let curvature = if self.config.fisher_rows.count(rows) < rows { &self.curvature } else { &self.batch };
@@ -138,20 +152,16 @@ impl<P: Policy> TrustRegion<P> {
         }
         let mut log_std = vec![0.0; self.policy.action_dim()];
         self.policy.log_std(&self.candidate, progress, &mut log_std);
-        Ok(UpdateMetrics {
-            kl: found.kl,
-            entropy: gaussian::entropy(&log_std),
-            grad_norm: norm,
-            epochs: 1,
-            trust_region: Some(TrustRegionMetrics {
-                step_fraction: found.fraction,
-                gain: start - found.loss,
-                cg_iterations: solution.iterations,
-                tried: found.tried,
-                rejected: self.rejected,
-            }),
-            ..UpdateMetrics::default()
-        })
+        let values = [
+            found.kl,
+            gaussian::entropy(&log_std),
+            found.fraction,
+            start - found.loss,
+            solution.iterations as f64,
+            found.tried as f64,
+            self.rejected as f64,
+        ];
+        Ok(Metrics::new(METRICS, values.to_vec()))
     }
 }
 
@@ -160,13 +170,17 @@ impl<P: Policy> Learner for Trpo<P> {
         &self.region.params
     }
 
+    fn metric_names(&self) -> &'static [&'static str] {
+        METRICS
+    }
+
     fn update(
         &mut self,
         executor: &dyn Executor,
         batch: &Batch,
         progress: f64,
         iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
+    ) -> Result<Metrics, LearnError> {
         let Self { region, baseline } = self;
         let targets = baseline.targets(batch, &region.config.advantages, iteration)?;
         let metrics = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {

@@ -104,3 +104,22 @@ fn more_minibatches_allocate_no_more_often() {
         }
     }
 }
+
+/// An evaluation held all rows of all its episodes at once. What is held of an episode now is less than 100 bytes, and no
+/// more where its steps are twice as many.
+#[test]
+fn more_episodes_are_no_more_rows() {
+    let case = Case::reach(Placement::Graph);
+    let params = case.sampler.policy().init(1, case.output_gain);
+    let peak = |episodes, horizon| {
+        let make = std::sync::Arc::new(Reach::new(ReachSettings::default()).unwrap());
+        let sampler = Sampler::new(case.sampler.policy().clone(), make, Some(horizon));
+        let asked =
+            Episodes { seed: 1, iteration: 0, indices: 0..episodes, progress: 1.0, kind: EpisodeKind::Evaluation };
+        measure(|| drop(sampler.outcomes(&Serial, &params, &asked, 0.95).unwrap())).bytes_max
+    };
+    for horizon in [20, 40] {
+        let (few, many) = (peak(200, horizon), peak(20_000, horizon));
+        assert!(many - few < 100 * 19_800, "{few} bytes for 200 episodes, {many} for 20,000 of {horizon} steps");
+    }
+}

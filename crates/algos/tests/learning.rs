@@ -7,8 +7,38 @@
 mod common;
 
 use common::Case;
-use hwasp_algos::{AdvantageConfig, BaselineConfig, TrpoConfig, TrpoSettings};
-use hwasp_core::{Placement, Serial};
+use hwasp_algos::{AdvantageConfig, BaselineConfig, Learner, Ppo, Trpo, TrpoConfig, TrpoSettings};
+use hwasp_core::{EpisodeKind, Episodes, Placement, Serial};
+
+/// Every learner filled one list of columns: TRPO told a clip fraction of 0 that nobody had measured, PPO no step of a trust
+/// region, and a third learner would have had to pass for one of them.
+#[test]
+fn learners_tell_what_they_know_and_nothing_else() {
+    let case = Case::reach(Placement::Graph);
+    let policy = case.sampler.policy();
+    let params = policy.init(3, case.output_gain);
+    let asked = Episodes { seed: 3, iteration: 0, indices: 0..20, progress: 0.0, kind: EpisodeKind::Training };
+    let batch = case.sampler.collect(&Serial, &params, &asked).unwrap();
+    let baseline = case.settings.baseline.clone();
+    let trust = TrpoSettings { trpo: TrpoConfig::default(), baseline };
+    let learners: [(Box<dyn Learner>, &[&str]); 2] = [
+        (
+            Box::new(Ppo::new(&case.settings, policy.clone(), params.clone(), 3)),
+            &["kl", "entropy", "clip_fraction", "grad_norm", "epochs"],
+        ),
+        (
+            Box::new(Trpo::new(&trust, policy.clone(), params.clone(), 3)),
+            &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected"],
+        ),
+    ];
+    for (mut learner, names) in learners {
+        assert_eq!(learner.metric_names(), names);
+        let metrics = learner.update(&Serial, &batch, 0.0, 0).unwrap();
+        assert_eq!(metrics.iter().map(|(name, _)| name).collect::<Vec<_>>(), names);
+        assert!(metrics.values().iter().all(|value| value.is_finite()), "{metrics:?}");
+        assert!(metrics.get("kl") > Some(0.0) && metrics.get("loss").is_none(), "{metrics:?}");
+    }
+}
 
 /// 60,000 steps. From returns of -9.8 to -4.7 six seeds went to -1.948 to -1.944 with the gear in the graph, all at 1.000,
 /// and to -1.953 to -1.945 with the gear in the action, at 0.950 to 1.058. The best gear is 1.

@@ -33,7 +33,8 @@ pub(crate) fn replay(replay: &Replay) -> String {
     }
     let _ = match &replay.outcome {
         Ok(update) => {
-            writeln!(text, "  now    it goes well: KL divergence {:.3e}, entropy {:.3}", update.kl, update.entropy)
+            let told = |name| update.get(name).unwrap_or(f64::NAN);
+            writeln!(text, "  now    it goes well: KL divergence {:.3e}, entropy {:.3}", told("kl"), told("entropy"))
         }
         Err(error) => writeln!(text, "  now    {error}"),
     };

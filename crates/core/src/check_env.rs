@@ -4,9 +4,8 @@ mod fault;
 
 use rand::RngExt;
 
-use crate::design::DesignSpace;
 use crate::environment::{End, EnvSpec, Environment, MakeEnvironment};
-use crate::hardware::Law;
+use crate::law::Law;
 use crate::streams::{Purpose, stream};
 
 pub use fault::EnvFault;
@@ -16,10 +15,12 @@ const STEPS: usize = 200;
 /// How many random starts are compared.
 const STARTS: u64 = 8;
 
-/// Drives environments from `make` with random commands through `law` with random designs, and returns the first broken
-/// promise: sane names, limits, horizon and time step, the law's ports; finite observations, states and rewards of the declared
-/// lengths; starts that depend on the random stream and on nothing else (or on nothing at all, with `fixed_start`); the
-/// same bits for the same commands; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
+/// Drives environments from `make` with random commands through `law`, and returns the first broken promise. Every episode
+/// has a design of its own: each parameter is drawn evenly between its limits, wherever the law's design begins.
+///
+/// Promised are sane names, limits, horizon and time step, the law's ports; finite observations, states and rewards of the
+/// declared lengths; starts that depend on the random stream and on nothing else (or on nothing at all, with `fixed_start`);
+/// the same bits for the same commands; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
 /// also at another one; nothing left of an episode after a reset, nothing shared between two environments.
 pub fn check_env(make: &dyn MakeEnvironment, law: &Law, fixed_start: bool) -> Result<(), EnvFault> {
     let spec = make.make(None).spec().clone();
@@ -152,12 +153,14 @@ impl Check<'_> {
         Moment::look(env, 0, 0.0, None)
     }
 
-    /// A design and commands, both within their limits, for this episode.
+    /// A design and commands for this episode, each even between its limits.
     fn inputs(&self, episode: u64, steps: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
         let rng = &mut stream(0, Purpose::Check, 1, episode);
-        let space: &DesignSpace = self.law.design();
-        let design = space.values(&space.sample_initial(rng));
-        let mut draw = || self.spec.command.iter().map(|p| p.lo + (p.hi - p.lo) * rng.random::<f64>()).collect();
+        let mut between = |lo: f64, hi: f64| lo + (hi - lo) * rng.random::<f64>();
+        let space = self.law.design();
+        let bounds = (0..space.len()).map(|i| space.bounds(i));
+        let design = bounds.map(|(lo, hi)| between(lo, hi)).collect();
+        let mut draw = || self.spec.command.iter().map(|p| between(p.lo, p.hi)).collect();
         (design, (0..steps).map(|_| draw()).collect())
     }
 

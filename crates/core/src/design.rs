@@ -73,6 +73,14 @@ pub enum DesignError {
         /// Its upper limit.
         hi: f64,
     },
+    /// Not one start per group.
+    #[error("{given} starts for {needed} groups of design parameters")]
+    Starts {
+        /// Starts given.
+        given: usize,
+        /// Groups there are.
+        needed: usize,
+    },
 }
 
 /// The parameters `p` of a mechanism, each confined to its limits by `p = lo + (hi - lo)·sigmoid(u)` with `u` free.

@@ -1,5 +1,7 @@
 //! Environments: a plant (physics) with a task (purpose).
 
+use std::sync::Arc;
+
 use crate::streams::Stream;
 use crate::units::Dimension;
 
@@ -15,10 +17,11 @@ pub enum End {
 }
 
 /// Whether an episode did what the task is about, for tasks that can be failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// What kind of episode it was, the object's shape for one: success is told for each kind.
-    pub kind: &'static str,
+    /// What kind of episode it was, the object's shape for one: success is told for each kind. A task keeps the names that
+    /// it gives, so that telling one copies no text.
+    pub kind: Arc<str>,
     /// Whether it succeeded.
     pub success: bool,
 }
@@ -110,7 +113,7 @@ pub trait Task: Send {
     /// The reward of having arrived at this state under `command`; called once a step, so that a task may keep count.
     fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
-    /// Whether this state has no future.
+    /// Whether this state has no future; asked after [`reward`](Self::reward), so that what it has counted is known.
     fn terminated(&self, _plant: &Self::Plant) -> bool {
         false
     }
@@ -222,6 +225,7 @@ impl<T: Task> Environment for Robot<T> {
         if self.plant.fault().is_some() {
             return Step { reward: 0.0, end: Some(End::Faulted) };
         }
+        let reward = self.task.reward(&self.plant, &self.limited);
         let end = if self.task.terminated(&self.plant) {
             Some(End::Terminated)
         } else if self.taken >= self.spec.horizon {
@@ -229,7 +233,7 @@ impl<T: Task> Environment for Robot<T> {
         } else {
             None
         };
-        Step { reward: self.task.reward(&self.plant, &self.limited), end }
+        Step { reward, end }
     }
 
     fn outcome(&self) -> Option<Outcome> {

@@ -1,6 +1,11 @@
 //! Who runs the jobs. Results come back in job order, and nothing in a job depends on who ran it.
 
+use std::sync::Mutex;
+
 use rayon::prelude::*;
+
+/// Why no slot of a result is ever poisoned.
+const UNPOISONED: &str = "a slot is locked once, by the job it belongs to, and nothing panics meanwhile";
 
 /// Runs independent jobs and returns their results in the order of the jobs.
 pub trait Executor: Send + Sync {
@@ -13,25 +18,31 @@ pub trait Executor: Send + Sync {
 
 impl dyn Executor + '_ {
     /// The results of `job(i)` for every `i < count`, in order.
+    ///
+    /// # Panics
+    /// If the executor does not run every job, or a job panics.
     pub fn map<T: Send>(&self, count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        let slots: Vec<std::sync::Mutex<Option<T>>> = (0..count).map(|_| std::sync::Mutex::new(None)).collect();
+        let slots: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
         self.for_each(count, &|i| {
             let result = job(i);
-            // Each slot is locked once, by the one job it belongs to.
-            if let Ok(mut slot) = slots[i].lock() {
-                *slot = Some(result);
-            }
+            *slots[i].lock().expect(UNPOISONED) = Some(result);
         });
-        slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
+        let result = |(i, slot): (usize, Mutex<Option<T>>)| {
+            let result = slot.into_inner().expect(UNPOISONED);
+            result.unwrap_or_else(|| panic!("the executor did not run job {i} of {count}"))
+        };
+        slots.into_iter().enumerate().map(result).collect()
     }
 
     /// Calls both, at once where there are workers for it; `first` before `second` where there is one.
+    ///
+    /// # Panics
+    /// If one of them panics.
     pub fn both<'a>(&self, first: &'a mut (dyn FnMut() + Send + 'a), second: &'a mut (dyn FnMut() + Send + 'a)) {
-        let jobs = [std::sync::Mutex::new(first), std::sync::Mutex::new(second)];
+        let jobs = [Mutex::new(first), Mutex::new(second)];
         self.for_each(jobs.len(), &|i| {
-            if let Ok(mut job) = jobs[i].lock() {
-                job();
-            }
+            let mut job = jobs[i].lock().expect("an executor runs every job once");
+            job();
         });
     }
 }
@@ -70,5 +81,31 @@ impl Executor for Threads {
 
     fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
         self.pool.install(|| (0..count).into_par_iter().for_each(job));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Forgets the last job.
+    struct Forgetful;
+
+    impl Executor for Forgetful {
+        fn workers(&self) -> usize {
+            1
+        }
+
+        fn for_each(&self, count: usize, job: &(dyn Fn(usize) + Sync)) {
+            (1..count).for_each(|i| job(i - 1));
+        }
+    }
+
+    /// The result of a job that was not run was left out: a batch had fewer episodes than were asked for, and nobody said so.
+    #[test]
+    #[should_panic(expected = "the executor did not run job 2 of 3")]
+    fn a_job_that_is_not_run_is_no_shorter_list() {
+        let executor: &dyn Executor = &Forgetful;
+        executor.map(3, |i| i);
     }
 }

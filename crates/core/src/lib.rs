@@ -10,9 +10,11 @@ mod environment;
 mod executor;
 pub mod gaussian;
 mod hardware;
+mod law;
 mod placement;
 mod policy;
 mod rollout;
+mod schedule;
 mod streams;
 mod units;
 
@@ -22,9 +24,13 @@ pub use environment::{
     CommandPort, End, EnvSpec, Environment, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,
 };
 pub use executor::{Executor, Serial, Threads};
-pub use hardware::{Hardware, Law, Ports};
+pub use hardware::{Hardware, Ports};
+pub use law::{Law, LawError};
 pub use placement::{Placement, PlacementError};
-pub use policy::{Actor, Anneal, HardwarePolicy, Noise, ParamGroup, Policy, PolicySpec, PolicyTape, Rows, Spread};
-pub use rollout::{Batch, Episode, EpisodeKind, Episodes, RolloutError, Sampler};
+pub use policy::{
+    Actor, Anneal, HardwarePolicy, Noise, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows, Spread,
+};
+pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, RolloutError, Sampler};
+pub use schedule::share_done;
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::environment::CommandPort;
-use crate::hardware::Law;
+use crate::law::Law;
 
 /// Where one design parameter sits (paper, section 4).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -61,6 +61,7 @@ enum Wrong {
     EarlyEnd,
     NoEnd,
     DeafToHorizon,
+    StrongGear,
 }
 
 /// A point pushed about, wrong in one way.
@@ -141,7 +142,12 @@ impl Environment for Point {
             Wrong::NoEnd => usize::MAX,
             _ => self.spec.horizon,
         };
-        let reward = if self.wrong == Wrong::NanReward && self.taken == 5 { f64::NAN } else { -self.x.abs() };
+        let broken = match self.wrong {
+            Wrong::NanReward => self.taken == 5,
+            Wrong::StrongGear => effort[0].abs() > 1.5 * limited.abs(),
+            _ => false,
+        };
+        let reward = if broken { f64::NAN } else { -self.x.abs() };
         Step { reward, end: (self.taken == last).then_some(End::Truncated) }
     }
 }
@@ -183,6 +189,14 @@ fn values_are_finite_and_written() {
     assert!(matches!(reward, EnvFault::NotFinite { kind: "reward", step: 5, .. }), "{reward}");
     let unwritten = fault(Wrong::Unwritten, false).unwrap_err();
     assert!(matches!(unwritten, EnvFault::NotFinite { kind: "observation", index: 1, step: 0, .. }), "{unwritten}");
+}
+
+/// Designs were drawn as the law begins: where it begins at a given value, all episodes had that one, and what only other
+/// designs break was not found. The law here begins with a gear of 1, and one above 1.5 breaks the environment.
+#[test]
+fn designs_are_random_where_the_law_begins_at_one() {
+    let gear = fault(Wrong::StrongGear, false).unwrap_err();
+    assert!(matches!(gear, EnvFault::NotFinite { kind: "reward", .. }), "{gear}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 mod common;
 
-use hwasp_core::{HardwarePolicy, Policy, Rows};
+use hwasp_core::{HardwarePolicy, ParamKind, Policy, Rows};
 use hwasp_diff::{GradCheckSettings, gradcheck};
 
 /// Rows that are passed, and the distance between their columns; the tape is larger still.
@@ -76,7 +76,11 @@ fn the_gradient_is_that_of_finite_differences() {
         policy.gradient(&mut tape, &mut gradient);
         for group in policy.groups() {
             let largest = gradient[group.range.clone()].iter().fold(0.0_f32, |m, g| m.max(g.abs()));
-            assert_eq!(largest == 0.0, group.name == "log_std" || group.range.is_empty(), "{group:?}: {largest}");
+            assert_eq!(
+                largest == 0.0,
+                group.kind == ParamKind::LogStd || group.range.is_empty(),
+                "{group:?}: {largest}"
+            );
             for i in group.range.clone() {
                 let at = params[i];
                 let mut moved = |step: f32| {
@@ -87,7 +91,13 @@ fn the_gradient_is_that_of_finite_differences() {
                 params[i] = at;
                 let error = (f64::from(gradient[i]) - numeric).abs();
                 let allowed = 2e-3 * f64::from(largest);
-                assert!(error <= allowed, "{} {i}: {} against {numeric}, {:?}", group.name, gradient[i], policy.spec());
+                assert!(
+                    error <= allowed,
+                    "{:?} {i}: {} against {numeric}, {:?}",
+                    group.kind,
+                    gradient[i],
+                    policy.spec()
+                );
             }
         }
     }
@@ -158,7 +168,7 @@ fn blocks_add_up() {
 fn the_program_passes_gradcheck() {
     for (policy, params) in policies() {
         let program = policy.program();
-        let design = policy.groups().iter().find(|g| g.name == "design").unwrap().range.clone();
+        let design = policy.groups().iter().find(|g| g.kind == ParamKind::Design).unwrap().range.clone();
         let u: Vec<f64> = params[design].iter().map(|&u| f64::from(u)).collect();
         let rows = 3;
         // In the interior of the limits: those of the motors are ±1 here, and samples are in SI.

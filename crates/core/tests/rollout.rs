@@ -90,12 +90,14 @@ fn no_episodes_are_an_empty_batch() {
 }
 
 /// What a [`Clock`] does after its start.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Habit {
     /// Ends after 1 + 16·start steps, rounded down, unless the horizon comes first.
     EndsEarly,
     /// Gives no number as reward in step 4 where it started above a half.
     LosesReward,
+    /// The same, but later the earlier it started: in the last step where it started at a half.
+    LosesRewardLate,
     /// Its physics fail there.
     Faults,
 }
@@ -106,6 +108,8 @@ struct Clock {
     habit: Habit,
     start: f64,
     taken: usize,
+    /// What its episodes are called.
+    kind: Arc<str>,
 }
 
 const HORIZON: usize = 10;
@@ -116,7 +120,7 @@ impl Clock {
         Arc::new(move |horizon: Option<usize>| -> Box<dyn Environment> {
             let mut spec = Self::shown();
             spec.horizon = horizon.unwrap_or(HORIZON);
-            Box::new(Self { spec, habit, start: 0.0, taken: 0 })
+            Box::new(Self { spec, habit, start: 0.0, taken: 0, kind: format!("clock of {HORIZON}").into() })
         })
     }
 
@@ -159,6 +163,10 @@ impl Environment for Clock {
         let (reward, end) = match self.habit {
             Habit::Faults => (1.0, bad.then_some(End::Faulted)),
             Habit::LosesReward => (if bad { f64::NAN } else { 1.0 }, None),
+            Habit::LosesRewardLate => {
+                let lost = self.start > 0.5 && self.taken == HORIZON - (16.0 * (self.start - 0.5)) as usize;
+                (if lost { f64::NAN } else { 1.0 }, None)
+            }
             Habit::EndsEarly => {
                 let over = self.taken == Self::length(self.start);
                 (self.start + self.taken as f64, over.then_some(End::Terminated))
@@ -168,7 +176,7 @@ impl Environment for Clock {
     }
 
     fn outcome(&self) -> Option<Outcome> {
-        Some(Outcome { kind: "clock", success: self.start > 0.25 })
+        Some(Outcome { kind: Arc::clone(&self.kind), success: self.start > 0.25 })
     }
 
     fn fault(&self) -> Option<String> {
@@ -265,7 +273,28 @@ fn a_reward_that_is_no_number_is_named() {
     }
 }
 
-/// Episodes whose physics fail are thrown away, told by name and charged; the others are as they were without them.
+/// Which of two failing episodes was told depended on the number of threads: in one job the first in time, in several jobs
+/// the first by index. Here the later episode fails in an earlier step, and both are lanes of the same job on one thread.
+#[test]
+fn the_first_failing_episode_is_told_for_any_number_of_workers() {
+    let (sampler, params) = sampler(Habit::LosesRewardLate);
+    let step = |episode| HORIZON - (16.0 * (start(7, 3, episode) - 0.5)) as usize - 1;
+    let fails = |episode: &u64| start(7, 3, *episode) > 0.5;
+    // Ten episodes, the first of which fails after another one of them.
+    let from = (0..1000).find(|&from| {
+        let failing: Vec<u64> = (from..from + 10).filter(fails).collect();
+        failing.len() >= 2 && failing[0] > from && failing[1..].iter().any(|&other| step(other) < step(failing[0]))
+    });
+    let from = from.unwrap();
+    let first = (from..).find(fails).unwrap();
+    for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap(), &Threads::new(5).unwrap()] {
+        let error = sampler.collect(executor, &params, &episodes(from..from + 10, EpisodeKind::Training)).unwrap_err();
+        assert_eq!((error.episode, error.step), (first, step(first)), "{} workers", executor.workers());
+    }
+}
+
+/// Episodes whose physics fail are thrown away, told by name and charged; the others are as they were without them. Their
+/// kind had to be a text of the program, so that no task could name its kinds after its settings.
 #[test]
 fn episodes_that_fault_are_discarded_and_counted() {
     let (sampler, params) = sampler(Habit::Faults);
@@ -288,9 +317,51 @@ fn episodes_that_fault_are_discarded_and_counted() {
             let rows = episode.rows.start * width..episode.rows.end * width;
             assert_eq!(batch.action[rows], alone.action[..]);
             let success = starts[index as usize] > 0.25;
-            assert_eq!(episode.outcome, Some(Outcome { kind: "clock", success }));
+            assert_eq!(episode.outcome, Some(Outcome { kind: "clock of 10".into(), success }));
         }
         let only = episodes(bad[0]..bad[0] + 1, EpisodeKind::Training);
         assert_eq!(sampler.collect(executor, &params, &only).unwrap_err(), *fault);
     }
+}
+
+/// An evaluation kept every row of every episode until the last was over: 32,000 episodes took 1.5 GB. What episodes come to
+/// is known without their rows, to the same bits; and 1,100 of them are several rounds of jobs.
+#[test]
+fn what_episodes_come_to_is_what_their_rows_give() {
+    for habit in [Habit::EndsEarly, Habit::Faults] {
+        let (sampler, params) = sampler(habit);
+        let asked = episodes(3..1103, EpisodeKind::Training);
+        let batch = sampler.collect(&Serial, &params, &asked).unwrap();
+        let (discounted, undiscounted) = (batch.returns(0.9), batch.returns(1.0));
+        for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+            let results = sampler.outcomes(executor, &params, &asked, 0.9).unwrap();
+            assert_eq!(results.len(), 1100);
+            let faults: Vec<_> = results.iter().filter_map(|result| result.as_ref().err().cloned()).collect();
+            assert_eq!(faults, batch.faults);
+            let sound: Vec<_> = results.iter().flatten().collect();
+            assert_eq!(sound.len(), batch.episodes.len());
+            for (e, (result, episode)) in sound.into_iter().zip(&batch.episodes).enumerate() {
+                let returns = [result.discounted_return, result.undiscounted_return];
+                assert_eq!(returns.map(f64::to_bits), [discounted[e], undiscounted[e]].map(f64::to_bits));
+                let (steps, end, outcome) = (result.steps, result.end, &result.outcome);
+                assert_eq!((steps, end, outcome), (episode.rows.len(), episode.end, &episode.outcome));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_episodes_come_to_has_the_errors_of_their_rows() {
+    for habit in [Habit::LosesReward, Habit::LosesRewardLate, Habit::Faults] {
+        let (sampler, params) = sampler(habit);
+        let bad = (0..1000).find(|&e| start(7, 3, e) > 0.5).unwrap();
+        let asked = episodes(bad..bad + if habit == Habit::Faults { 1 } else { 700 }, EpisodeKind::Training);
+        let wanted = sampler.collect(&Serial, &params, &asked).unwrap_err();
+        for executor in [&Serial as &dyn Executor, &Threads::new(2).unwrap()] {
+            assert_eq!(sampler.outcomes(executor, &params, &asked, 0.9).unwrap_err(), wanted);
+        }
+    }
+    let (sampler, params) = sampler(Habit::EndsEarly);
+    let none = sampler.outcomes(&Serial, &params, &episodes(5..5, EpisodeKind::Training), 0.9);
+    assert_eq!(none, Ok(vec![]));
 }

@@ -74,6 +74,8 @@ pub struct Program {
     constants: Vec<f64>,
     uniform_code: Vec<Instruction>,
     row_code: Vec<Instruction>,
+    /// The order in which the steps of both kinds were recorded: whether the next one is a row instruction.
+    recorded: Vec<bool>,
     outputs: Vec<Slot>,
     held: Vec<bool>,
     plan: ReversePlan,

@@ -93,7 +93,7 @@ impl<'t> Var<'t> {
         matches!(self.0, Value::Constant(c) if c.to_bits() == value.to_bits())
     }
 
-    fn unary(self, op: Unary) -> Self {
+    pub(crate) fn unary(self, op: Unary) -> Self {
         match self.0 {
             Value::Constant(value) => Self::constant(op.value(value)),
             Value::Traced(tape, index) => match (op, tape.node(index)) {
@@ -103,7 +103,7 @@ impl<'t> Var<'t> {
         }
     }
 
-    fn binary(self, op: Binary, other: Self) -> Self {
+    pub(crate) fn binary(self, op: Binary, other: Self) -> Self {
         let tape: &'t Tape = match (self.0, other.0) {
             (Value::Constant(a), Value::Constant(b)) => return Self::constant(op.value(a, b)),
             (Value::Traced(a, _), Value::Traced(b, _)) => {

@@ -107,6 +107,28 @@ proptest! {
         }
     }
 
+    /// A law that is data was composed into a policy with other sums than one that is code: its uniform steps all came
+    /// before its row steps, and an operand that the composition makes a column collected its cotangents in another order.
+    #[test]
+    fn a_retraced_program_is_the_one_that_the_law_gives_in_its_place(code in code()) {
+        let inner = traced(&code);
+        let compose = |retraced: bool| {
+            Program::trace(&["u"], &["c0", "c1"], |u, c| {
+                let uniforms = [u[0].sigmoid(), c[0], Scalar::constant(1.0)];
+                let columns = [c[1] * 2.0, Scalar::constant(0.5)];
+                let values = if retraced {
+                    inner.retrace(&uniforms, &columns)
+                } else {
+                    let inputs = [&uniforms[..], &columns].concat();
+                    let [last, all] = law(&code, &inputs, |_| {});
+                    vec![last, all, uniforms[1], columns[0]]
+                };
+                (0..).map(|o: usize| o.to_string()).zip(values).collect()
+            })
+        };
+        prop_assert_eq!(format!("{:?}", compose(true)), format!("{:?}", compose(false)));
+    }
+
     #[test]
     fn derivatives_agree_with_finite_differences(code in code(), uniforms in numbers(3), columns in numbers(4)) {
         let (gap, largest) = conditions(&code, &uniforms, &columns, 2);

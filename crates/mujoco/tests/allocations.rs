@@ -23,6 +23,7 @@ fn grasp_steps_do_not_allocate() {
             let command = [-0.001, 0.0001];
             law.effort(&design, &command, &state, &mut effort);
             environment.step(&effort, &command);
+            assert!(environment.outcome().is_some());
         }
     });
     assert_eq!(counted.count_total, 0, "{counted:?}");

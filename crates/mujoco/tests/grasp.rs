@@ -287,7 +287,7 @@ fn the_script_grasps_every_shape() {
             let (total, end) = Script::default().play(&mut robot, &grasp, &SEARCHED, &mut rng(1));
             assert_eq!(end, End::Truncated);
             let outcome = robot.outcome().unwrap();
-            assert_eq!((outcome.kind, outcome.success), (kind.name(), true), "return {total}");
+            assert_eq!((&*outcome.kind, outcome.success), (kind.name(), true), "return {total}");
             assert!(total > 500.0 && robot.plant().clearance() > 0.1, "{kind:?}: {total}");
             // Thumb and both fingers hold it.
             let touching = robot.plant().touching();

@@ -1,6 +1,6 @@
 //! Trained parameters as safetensors: a format that cannot run code, read by every framework.
 
-use hwasp_core::{HardwarePolicy, Policy};
+use hwasp_core::{HardwarePolicy, ParamKind, Policy};
 use safetensors::SafeTensors;
 use safetensors::tensor::Dtype;
 use thiserror::Error;
@@ -45,9 +45,9 @@ fn tensors(policy: &HardwarePolicy) -> Vec<(String, Vec<usize>)> {
         names.push((format!("controller.{layer}.weight"), sizes.to_vec()));
         names.push((format!("controller.{layer}.bias"), vec![sizes[1]]));
     }
-    for group in policy.groups().iter().filter(|g| g.name != "controller" && !g.range.is_empty()) {
+    for group in policy.groups().iter().filter(|g| g.kind != ParamKind::Controller && !g.range.is_empty()) {
         // What is stored of the design is the unbounded stand-in of each free parameter; design.toml has the SI values.
-        let name = if group.name == "design" { "design.logit" } else { group.name };
+        let name = if group.kind == ParamKind::Design { "design.logit" } else { group.kind.name() };
         names.push((name.to_owned(), vec![group.range.len()]));
     }
     names

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hwasp_algos::UpdateMetrics;
+use hwasp_algos::Metrics;
 use hwasp_core::Executor;
 use hwasp_training::spec::EXPERIMENT;
 use hwasp_training::{Checkpoint, TrainError, repeat};
@@ -48,7 +48,7 @@ pub struct Replay {
     /// Whether the episodes have the bits of those that were written down, where they were.
     pub same_batch: Option<bool>,
     /// What happens now.
-    pub outcome: Result<UpdateMetrics, TrainError>,
+    pub outcome: Result<Metrics, TrainError>,
 }
 
 /// Repeats the iteration that follows a checkpoint: a file of a run folder's `faults`, or of its `checkpoints`.

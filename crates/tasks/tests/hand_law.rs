@@ -101,7 +101,7 @@ fn reverse_tangent_and_finite_differences_agree() {
             columns.extend(angles);
             let settings = GradCheckSettings { first_step: 1e-3, ..GradCheckSettings::default() };
             for design in [SMALL_CENTRE, HandRange::Large.middle()] {
-                let checked = gradcheck(&law.program(), &design, &columns, &settings);
+                let checked = gradcheck(law.program(), &design, &columns, &settings);
                 assert!(checked.is_ok(), "travel {travel}, angles {angles:?}: {}", checked.unwrap_err());
             }
         }

@@ -42,7 +42,7 @@ proptest! {
                     lo + (hi - lo) * part[i]
                 })
                 .collect();
-            let checked = gradcheck(&law.program(), &design, &columns, &GradCheckSettings::default());
+            let checked = gradcheck(law.program(), &design, &columns, &GradCheckSettings::default());
             prop_assert!(checked.is_ok(), "{:?}: {}", law.ports().effort, checked.unwrap_err());
         }
     }

@@ -20,7 +20,7 @@ use serde_json::json;
 fn write(folder: &Path, assembly: &Assembly, batch: &Batch) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
     let (policy, transmission) = (&assembly.policy, assembly.grasp(None)?.settings().hand.transmission.clone());
-    let groups = policy.groups().iter().map(|group| (group.name, [group.range.start, group.range.end]));
+    let groups = policy.groups().iter().map(|group| (group.kind.name(), [group.range.start, group.range.end]));
     let limits = |(lo, hi)| [lo, hi];
     let about = json!({
         "controller": policy.controller().sizes(),
@@ -83,11 +83,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         last = Some(learner.update(&executor, &batch, 0.0, 0)?);
         seconds.push(began.elapsed().as_secs_f64());
     }
-    let step = last.as_ref().and_then(|metrics| metrics.trust_region);
+    let told = |name| last.as_ref().and_then(|metrics| metrics.get(name));
     println!(
         "{}",
-        json!({ "rows": batch.rows(), "seconds": seconds, "kl": last.as_ref().map(|metrics| metrics.kl),
-                "cg_iterations": step.map(|s| s.cg_iterations), "tried": step.map(|s| s.tried) })
+        json!({ "rows": batch.rows(), "seconds": seconds, "kl": told("kl"),
+                "cg_iterations": told("cg_iterations"), "tried": told("tried") })
     );
     Ok(())
 }

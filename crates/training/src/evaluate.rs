@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, RolloutError, Sampler, Stream};
+use hwasp_core::{EpisodeKind, EpisodeResult, Episodes, Executor, RolloutError, Sampler, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -90,10 +90,10 @@ fn is_zero(count: &u64) -> bool {
 }
 
 /// Over all episodes, then kind by kind in the order of their names; empty where the task knows no success.
-fn success_rates(batch: &Batch) -> Vec<SuccessRate> {
+fn success_rates(results: &[Result<EpisodeResult, RolloutError>]) -> Vec<SuccessRate> {
     let mut kinds: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
-    for outcome in batch.episodes.iter().filter_map(|e| e.outcome) {
-        let (successes, episodes) = kinds.entry(outcome.kind).or_default();
+    for outcome in results.iter().flatten().filter_map(|e| e.outcome.as_ref()) {
+        let (successes, episodes) = kinds.entry(&*outcome.kind).or_default();
         *successes += u64::from(outcome.success);
         *episodes += 1;
     }
@@ -141,11 +141,11 @@ pub fn evaluate_in(
     asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    let batch = rollouts(assembly, world, design, params, asked, executor)?;
-    Ok(Evaluation::new(&batch, assembly.spec().discount(), asked)?)
+    Ok(Evaluation::new(&rollouts(assembly, world, design, params, asked, executor)?, asked)?)
 }
 
-/// The episodes of an evaluation.
+/// What the episodes of an evaluation come to, by index; the error where the physics failed. Their rows are not kept, so that
+/// there may be many.
 pub(crate) fn rollouts(
     assembly: &Assembly,
     world: &World,
@@ -153,27 +153,31 @@ pub(crate) fn rollouts(
     params: &[f32],
     (episodes, seed): (u64, u64),
     executor: &dyn Executor,
-) -> Result<Batch, EvaluateError> {
+) -> Result<Vec<Result<EpisodeResult, RolloutError>>, EvaluateError> {
     let sampler = sampler(assembly, world, design)?;
     let controller = assembly.policy.controller_params(params);
-    Ok(sampler.collect(executor, controller, &held_out(seed, 0..episodes))?)
+    Ok(sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), assembly.spec().discount())?)
 }
 
 impl Evaluation {
     /// What the episodes come to.
-    pub(crate) fn new(batch: &Batch, discount: f64, (episodes, seed): (u64, u64)) -> Result<Self, StatsError> {
-        let discounted = batch.returns(discount);
+    pub(crate) fn new(
+        results: &[Result<EpisodeResult, RolloutError>],
+        (episodes, seed): (u64, u64),
+    ) -> Result<Self, StatsError> {
+        let returns = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).collect::<Vec<_>>();
+        let discounted = returns(|e| e.discounted_return);
         let mut stream = Stream::seed_from_u64(seed);
         let sample = Sample::new(&discounted)?;
         Ok(Self {
             episodes,
             seed,
             discounted_return: mean_interval(&discounted, &mut stream)?,
-            undiscounted_return: mean_interval(&batch.returns(1.0), &mut stream)?,
+            undiscounted_return: mean_interval(&returns(|e| e.undiscounted_return), &mut stream)?,
             median_discounted_return: sample.quantile(0.5),
             worst_discounted_return: sample.min(),
-            discarded_episodes: batch.faults.len() as u64,
-            success: success_rates(batch),
+            discarded_episodes: results.iter().filter(|result| result.is_err()).count() as u64,
+            success: success_rates(results),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The loop that follows the policy's gradient: jobs out, a batch in, an update, an event.
 
-use hwasp_algos::{Archive, Exchange, Learner, Persist, StateError, UpdateMetrics};
+use hwasp_algos::{Archive, Exchange, Learner, Metrics, Persist, StateError};
 use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, Sampler};
 
 use crate::assemble::Assembly;
@@ -85,7 +85,7 @@ impl<'a> Gradient<'a> {
         let policy = &self.assembly.policy;
         let totals = policy.space().totals(&policy.design(self.learner.params()));
         let returns = mean_returns(&batch, self.assembly.spec().discount());
-        Ok(self.learned.tell(returns, Some(update), totals, run)?)
+        Ok(self.learned.tell(returns, Some(&update), totals, run)?)
     }
 
     /// Tells the observer of an iteration that failed, with all that it takes to repeat it: the learner is as it was.
@@ -114,7 +114,7 @@ impl<'a> Gradient<'a> {
     }
 
     /// The update of the iteration at hand.
-    fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<UpdateMetrics, TrainError> {
+    fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
         let asked = self.assembly.spec().train.episodes_per_iteration;
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
@@ -148,7 +148,7 @@ pub fn repeat(
     assembly: &Assembly,
     from: &Archive,
     executor: &dyn Executor,
-) -> Result<(Option<Batch>, Result<UpdateMetrics, TrainError>), StateError> {
+) -> Result<(Option<Batch>, Result<Metrics, TrainError>), StateError> {
     let mut state = Gradient::new(assembly, Some(from))?;
     let progress = state.progress();
     Ok(match state.collect(executor) {

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use hwasp_algos::{Archive, Exchange, Persist, StateError, UpdateMetrics};
+use hwasp_algos::{Archive, Exchange, Metrics, Persist, StateError};
 use hwasp_core::Executor;
 
 use crate::checkpoint::Checkpoint;
@@ -71,7 +71,7 @@ impl Learned {
     pub(crate) fn tell(
         &mut self,
         returns: (f64, f64),
-        update: Option<UpdateMetrics>,
+        update: Option<&Metrics>,
         design_totals: Vec<f64>,
         run: &mut Loop<'_>,
     ) -> Result<(), ObserverError> {
@@ -80,15 +80,17 @@ impl Learned {
             self.recent.pop_front();
         }
         self.wall_s = run.clock.wall_s();
+        let told = |name| update.and_then(|update| update.get(name));
         run.observer.on(Event::Iteration(&MetricsRow {
             iteration: self.iterations,
             env_steps: self.env_steps,
             wall_s: self.wall_s,
             discounted_return: returns.0,
             undiscounted_return: returns.1,
-            kl: update.map_or(f64::NAN, |u| u.kl),
-            entropy: update.map_or(f64::NAN, |u| u.entropy),
-            step_fraction: update.map_or(f64::NAN, |u| u.trust_region.map_or(1.0, |r| r.step_fraction)),
+            kl: told("kl").unwrap_or(f64::NAN),
+            entropy: told("entropy").unwrap_or(f64::NAN),
+            // Learners without a line search take their whole step.
+            step_fraction: told("step_fraction").unwrap_or(if update.is_some() { 1.0 } else { f64::NAN }),
             design_totals,
         }))?;
         self.iterations += 1;

@@ -3,7 +3,7 @@
 //! Episodes of one index begin alike and meet the same noise whatever acts in them (common random numbers), so that the
 //! difference of two of them varies far less than either.
 
-use hwasp_core::{Batch, Executor, Stream};
+use hwasp_core::{EpisodeResult, Executor, RolloutError, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
@@ -63,8 +63,8 @@ fn tried(
     asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<(Evaluation, Vec<Option<Trial>>), EvaluateError> {
-    let batch = rollouts(assembly, &assembly.problem.deployment, design, params, asked, executor)?;
-    Ok((Evaluation::new(&batch, assembly.spec().discount(), asked)?, trials(&batch, asked.0)))
+    let results = rollouts(assembly, &assembly.problem.deployment, design, params, asked, executor)?;
+    Ok((Evaluation::new(&results, asked)?, trials(&results)))
 }
 
 /// How one episode went.
@@ -75,13 +75,12 @@ struct Trial {
 }
 
 /// The episodes by index; none where the physics failed.
-fn trials(batch: &Batch, asked: u64) -> Vec<Option<Trial>> {
-    let mut done = batch.returns(1.0).into_iter().zip(&batch.episodes).map(|(undiscounted_return, episode)| Trial {
-        undiscounted_return,
-        success: episode.outcome.map(|outcome| outcome.success),
-    });
-    let failed = |index| batch.faults.iter().any(|fault| fault.episode == index);
-    (0..asked).map(|index| if failed(index) { None } else { done.next() }).collect()
+fn trials(results: &[Result<EpisodeResult, RolloutError>]) -> Vec<Option<Trial>> {
+    let trial = |episode: &EpisodeResult| Trial {
+        undiscounted_return: episode.undiscounted_return,
+        success: episode.outcome.as_ref().map(|outcome| outcome.success),
+    };
+    results.iter().map(|result| result.as_ref().ok().map(trial)).collect()
 }
 
 impl Change {

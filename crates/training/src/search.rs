@@ -82,6 +82,8 @@ impl<'a> Problem<'a> {
                     top: ars.top,
                     step_size: ars.step_size,
                     noise_std: ars.noise_std,
+                    lower: limits(0.0),
+                    upper: limits(1.0),
                 };
                 Ok(Box::new(Ars::new(config, start, spec.seed)?))
             }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Shown;
 use crate::adam::{Adam, AdamConfig, clip_norm};
 use crate::archive::{Exchange, Persist, StateError};
-use crate::minibatch::BLOCK;
+use crate::minibatch::{BLOCK, minibatches};
 
 /// Settings of an [`MlpBaseline`].
 ///
@@ -19,7 +19,7 @@ use crate::minibatch::BLOCK;
 /// | `learning_rate` | 1e-3 | of Adam |
 /// | `learning_rate_final` | 1 | fraction of it left at the end of a linear decay |
 /// | `epochs` | 4 | passes over a batch |
-/// | `minibatch_rows` | 1000 | rows of a gradient step; 0 for the whole batch |
+/// | `minibatch_rows` | 1000 | rows of a gradient step at most, the same for all steps but for one row; 0 for the whole batch |
 /// | `max_grad_norm` | 0.5 | longest gradient |
 /// | `privileged` | false | also sees the law's state, which the controller does not |
 /// | `context` | false | also sees what the episode is about and no sensor tells |
@@ -33,7 +33,7 @@ pub struct MlpBaselineConfig {
     pub learning_rate_final: f64,
     /// Passes over a batch.
     pub epochs: usize,
-    /// Rows of a gradient step; 0 for the whole batch.
+    /// Rows of a gradient step at most: a batch is divided evenly. 0 for the whole batch.
     pub minibatch_rows: usize,
     /// Longest gradient.
     pub max_grad_norm: Option<f64>,
@@ -194,7 +194,6 @@ impl MlpBaseline {
         self.follow(targets);
         let (mean, std) = self.scale();
         let (rows, width) = (batch.rows(), self.network.inputs());
-        let minibatch = if self.config.minibatch_rows == 0 { rows } else { self.config.minibatch_rows };
         let decay = 1.0 + (self.config.learning_rate_final - 1.0) * progress;
         let rate = vec![(self.config.learning_rate * decay) as f32; self.params.len()];
         let mut order: Vec<u32> = (0..rows as u32).collect();
@@ -204,7 +203,7 @@ impl MlpBaseline {
         let mut cotangent = vec![0.0; BLOCK];
         for _ in 0..self.config.epochs {
             order.shuffle(&mut shuffle);
-            for indices in order.chunks(minibatch) {
+            for indices in minibatches(&order, self.config.minibatch_rows) {
                 self.network.bind(&self.params, &mut self.tape);
                 let weight = 1.0 / indices.len() as f32;
                 for block in indices.chunks(BLOCK) {

@@ -127,7 +127,7 @@ impl Baseline {
 
     /// [Fits](Self::fit) while `improve` improves the policy, at once where there are threads for it: both learn from the same
     /// targets, and neither looks at the other. If either fails the baseline is as it was before.
-    pub(crate) fn fit_beside<T: Default + Send>(
+    pub(crate) fn fit_beside<T: Send>(
         &mut self,
         executor: &dyn Executor,
         (batch, targets): (&Batch, &Advantages),
@@ -136,10 +136,11 @@ impl Baseline {
     ) -> Result<T, LearnError> {
         let not_finite = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
         let before = self.save().map_err(not_finite)?;
-        let (mut improved, mut fitted) = (Ok(T::default()), Ok(()));
-        executor.both(&mut || improved = improve(), &mut || {
-            fitted = self.fit(batch, targets, progress, iteration);
+        let (mut improved, mut fitted) = (None, None);
+        executor.both(&mut || improved = Some(improve()), &mut || {
+            fitted = Some(self.fit(batch, targets, progress, iteration));
         });
+        let (improved, fitted) = improved.zip(fitted).expect("an executor runs every job");
         let result = improved.and_then(|improved| fitted.map(|()| improved));
         if result.is_err() {
             self.load(&before).map_err(not_finite)?;

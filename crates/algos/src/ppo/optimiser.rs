@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, ParamKind, Policy, Purpose, gaussian, stream};
 use rand::seq::SliceRandom;
 
-use super::PpoConfig;
+use super::{METRICS, PpoConfig};
 use crate::adam::{Adam, AdamConfig, clip_norm};
-use crate::learner::{LearnError, UpdateMetrics};
-use crate::minibatch::{BLOCK, Minibatch};
+use crate::learner::LearnError;
+use crate::metrics::Metrics;
+use crate::minibatch::{BLOCK, Minibatch, minibatches};
 use crate::surrogate::Surrogate;
 
 /// A policy's parameters and their optimiser.
@@ -62,10 +63,10 @@ impl<P: Policy> Optimiser<P> {
         let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
         let mut rates = vec![rate as f32; self.params.len()];
         for group in self.policy.groups() {
-            let scale = match group.name {
-                "design" => config.design_lr_scale,
-                "log_std" => config.log_std_lr_scale,
-                _ => 1.0,
+            let scale = match group.kind {
+                ParamKind::Controller => 1.0,
+                ParamKind::Design => config.design_lr_scale,
+                ParamKind::LogStd => config.log_std_lr_scale,
             };
             rates[group.range.clone()].fill((rate * scale) as f32);
         }
@@ -83,30 +84,30 @@ impl<P: Policy> Optimiser<P> {
         advantage: &[f32],
         progress: f64,
         iteration: u64,
-    ) -> Result<UpdateMetrics, LearnError> {
+    ) -> Result<Metrics, LearnError> {
         let rates = self.learning_rates(progress);
         let rows = batch.rows();
-        let whole = self.config.minibatch_rows == 0 || self.config.minibatch_rows >= rows;
-        let size = if whole { rows } else { self.config.minibatch_rows };
+        let size = self.config.minibatch_rows;
+        let whole = size == 0 || size >= rows;
         let mut order: Vec<u32> = (0..rows as u32).collect();
         let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
-        let mut metrics = UpdateMetrics::default();
-        let mut steps = 0;
+        let (mut kl, mut clip_fraction, mut norms) = (0.0, 0.0, 0.0);
+        let (mut steps, mut epochs) = (0, 0);
         for epoch in 0..self.config.epochs {
             if !whole {
                 order.shuffle(&mut shuffle);
             }
             let mut epoch_totals = Totals::default();
-            for indices in order.chunks(size.max(1)) {
+            for indices in minibatches(&order, size) {
                 // The whole batch in its own order needs gathering but once.
                 if !whole || epoch == 0 {
                     let dims = self.dims();
                     self.step.minibatch.gather(batch, advantage, indices, dims);
                 }
                 let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
-                metrics.grad_norm += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
+                norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
                 steps += 1;
-                if !metrics.grad_norm.is_finite() {
+                if !f64::is_finite(norms) {
                     return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
                 }
                 self.adam.step(&mut self.params, &self.step.gradient, &rates);
@@ -115,18 +116,19 @@ impl<P: Policy> Optimiser<P> {
                 epoch_totals.rows += totals.rows;
             }
             let n = epoch_totals.rows.max(1) as f64;
-            metrics.kl = epoch_totals.kl / n;
-            metrics.clip_fraction = epoch_totals.clipped / n;
-            metrics.epochs = epoch + 1;
-            if self.config.target_kl.is_some_and(|limit| metrics.kl > 1.5 * limit) {
+            (kl, clip_fraction) = (epoch_totals.kl / n, epoch_totals.clipped / n);
+            epochs = epoch + 1;
+            if self.config.target_kl.is_some_and(|limit| kl > 1.5 * limit) {
                 break;
             }
         }
-        metrics.grad_norm /= f64::from(steps).max(1.0);
+        let grad_norm = norms / f64::from(steps).max(1.0);
         self.policy.log_std(&self.params, progress, &mut self.step.log_std);
-        metrics.entropy = gaussian::entropy(&self.step.log_std);
-        let sound = self.params.iter().all(|p| p.is_finite());
-        sound.then_some(metrics).ok_or(LearnError::NotFinite { what: "a parameter", iteration })
+        if !self.params.iter().all(|p| p.is_finite()) {
+            return Err(LearnError::NotFinite { what: "a parameter", iteration });
+        }
+        let entropy = gaussian::entropy(&self.step.log_std);
+        Ok(Metrics::new(METRICS, vec![kl, entropy, clip_fraction, grad_norm, epochs as f64]))
     }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::archive::{Exchange, Persist, StateError};
 
-use super::{Search, SearchError, failed_last};
+use super::{Search, SearchError, check_limits, failed_last, limits};
 
 /// Settings of [`Ars`]: V1 with all directions, V1-t with the best of them. V2 and V2-t are the same search with a
 /// [`StateFilter`](super::StateFilter) before the controller.
@@ -18,7 +18,8 @@ use super::{Search, SearchError, failed_last};
 /// | `top` | b | 16 | the best of them, which count; N for V1 and V2 |
 /// | `step_size` | α | 0.05 | length of a step, in units of the scores' standard deviation |
 /// | `noise_std` | ν | 0.1 | how far candidates are from the centre, per parameter |
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// | `lower`, `upper` | | none | limits of the coordinates; infinite where there is none |
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArsConfig {
     /// Directions tried per generation, N.
     pub directions: usize,
@@ -28,16 +29,23 @@ pub struct ArsConfig {
     pub step_size: f64,
     /// How far candidates are from the centre, ν.
     pub noise_std: f64,
+    /// Smallest value of each coordinate; may be `-∞`.
+    pub lower: Option<Vec<f64>>,
+    /// Largest value of each coordinate; may be `∞`.
+    pub upper: Option<Vec<f64>>,
 }
 
 impl Default for ArsConfig {
     fn default() -> Self {
-        Self { directions: 32, top: 16, step_size: 0.05, noise_std: 0.1 }
+        Self { directions: 32, top: 16, step_size: 0.05, noise_std: 0.1, lower: None, upper: None }
     }
 }
 
 /// Random search along the best of N antithetic directions (algorithm 1). Candidates 2i and 2i + 1 are centre ± ν·δᵢ and
 /// share their episodes. The directions are not kept: their streams give them again.
+///
+/// Where coordinates have limits, candidates and centre are moved inside them, and a step goes along what was tried,
+/// (x⁺ - x⁻)/2ν in the place of δ: a coordinate that a limit stopped both ways at once was not tried and does not move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ars {
     config: ArsConfig,
@@ -46,6 +54,13 @@ pub struct Ars {
     center: Vec<f64>,
     /// Generations told.
     generation: u64,
+}
+
+impl ArsConfig {
+    /// Lower and upper limit of coordinate `i`.
+    fn bound(&self, i: usize) -> (f64, f64) {
+        limits(self.lower.as_deref(), self.upper.as_deref(), i)
+    }
 }
 
 impl Ars {
@@ -62,6 +77,13 @@ impl Ars {
                 return Err(SearchError::Setting { name, value, limits: "a positive finite number" });
             }
         }
+        check_limits(config.lower.as_deref(), config.upper.as_deref(), center.len())?;
+        for (i, &value) in center.iter().enumerate() {
+            let (lower, upper) = config.bound(i);
+            if value < lower || value > upper {
+                return Err(SearchError::Setting { name: "start", value, limits: "inside of the bounds" });
+            }
+        }
         Ok(Self { config, seed, center, generation: 0 })
     }
 
@@ -69,6 +91,34 @@ impl Ars {
     fn direction(&self, i: usize) -> impl Iterator<Item = f64> + use<> {
         let mut stream = stream(self.seed, Purpose::Search, self.generation, i as u64);
         (0..self.center.len()).map(move |_| StandardNormal.sample(&mut stream))
+    }
+
+    /// A point, each of its coordinates moved to the next one inside the limits.
+    fn inside(&self, mut point: Vec<f64>) -> Vec<f64> {
+        if self.config.lower.is_some() || self.config.upper.is_some() {
+            for (i, x) in point.iter_mut().enumerate() {
+                let (lower, upper) = self.config.bound(i);
+                *x = x.clamp(lower, upper);
+            }
+        }
+        point
+    }
+
+    /// The candidate so far from the centre along a direction.
+    fn candidate(&self, i: usize, step: f64) -> Vec<f64> {
+        self.inside(self.center.iter().zip(self.direction(i)).map(|(m, d)| m + step * d).collect())
+    }
+
+    /// A direction as it was tried, in units of ν: δ itself where no limit stopped a candidate.
+    fn tried(&self, i: usize) -> Vec<f64> {
+        let noise = self.config.noise_std;
+        let pairs = self.candidate(i, noise).into_iter().zip(self.candidate(i, -noise));
+        let moved = self.center.iter().zip(self.direction(i)).zip(pairs);
+        let tried = moved.map(|((m, d), (plus, minus))| {
+            let free = plus == m + noise * d && minus == m - noise * d;
+            if free { d } else { (plus - minus) / (2.0 * noise) }
+        });
+        tried.collect()
     }
 }
 
@@ -78,9 +128,8 @@ impl Search for Ars {
     }
 
     fn ask(&mut self) -> Vec<Vec<f64>> {
-        let moved = |i, step: f64| self.center.iter().zip(self.direction(i)).map(|(m, d)| m + step * d).collect();
         let noise = self.config.noise_std;
-        (0..self.config.directions).flat_map(|i| [moved(i, noise), moved(i, -noise)]).collect()
+        (0..self.config.directions).flat_map(|i| [self.candidate(i, noise), self.candidate(i, -noise)]).collect()
     }
 
     /// Algorithm 1, lines 6 and 7. A direction of which one way failed says nothing and is left out; so are all where the
@@ -101,11 +150,11 @@ impl Search for Ars {
             let step = self.config.step_size / (pairs.len() as f64 * std);
             let mut center = self.center.clone();
             for &(i, plus, minus) in &pairs {
-                for (m, d) in center.iter_mut().zip(self.direction(i)) {
+                for (m, d) in center.iter_mut().zip(self.tried(i)) {
                     *m += step * (plus - minus) * d;
                 }
             }
-            self.center = center;
+            self.center = self.inside(center);
         }
         self.generation += 1;
         Ok(())
@@ -148,7 +197,7 @@ mod tests {
     /// the step is 2·α·δ towards the better of the two.
     #[test]
     fn one_update_by_hand() {
-        let config = ArsConfig { directions: 2, top: 1, step_size: 0.3, noise_std: 0.1 };
+        let config = ArsConfig { directions: 2, top: 1, step_size: 0.3, ..ArsConfig::default() };
         let mut ars = search(config);
         let asked = ars.ask();
         let delta: Vec<f64> = (0..3).map(|j| (asked[2][j] - asked[3][j]) / 0.2).collect();
@@ -163,6 +212,55 @@ mod tests {
             assert!((ars.center()[j] - wanted).abs() < 1e-12, "{} is not {wanted}", ars.center()[j]);
         }
         assert_eq!((ars.group(0), ars.group(1), ars.group(2)), (0, 0, 1));
+    }
+
+    /// A candidate beyond the limits was scored as the limit, but counted as what had been drawn: the centre went out of
+    /// [0, 1], where both ways of a direction are the same design and only noise tells them apart, and never came back.
+    #[test]
+    fn what_a_limit_stopped_was_not_tried() {
+        let (lower, upper) = (Some(vec![0.0, 0.0]), Some(vec![1.0, 1.0]));
+        let config = ArsConfig { directions: 1, top: 1, step_size: 0.3, noise_std: 0.1, lower, upper };
+        let start = [0.5, 1.0];
+        let mut ars = Ars::new(config, start.to_vec(), 7).unwrap();
+        for _ in 0..50 {
+            let before = ars.center();
+            let asked = ars.ask();
+            assert!(asked.iter().flatten().all(|x| (0.0..=1.0).contains(x)), "{asked:?}");
+            ars.tell(&[2.0, 1.0]).unwrap();
+            // One direction and scores of 2 and 1: the step is 2·α along it, and the way tried is (x⁺ - x⁻)/2ν.
+            for (j, (after, before)) in ars.center().into_iter().zip(before).enumerate() {
+                let tried = (asked[0][j] - asked[1][j]) / 0.2;
+                let wanted = (before + 2.0 * 0.3 * tried).clamp(0.0, 1.0);
+                assert!((after - wanted).abs() < 1e-12, "coordinate {j}: {after} is not {wanted}");
+            }
+        }
+    }
+
+    /// A coordinate that both candidates of every direction have at the same limit stays where it is.
+    #[test]
+    fn a_coordinate_that_was_not_tried_does_not_move() {
+        let (lower, upper) = (Some(vec![0.0, 0.5]), Some(vec![1.0, 0.5 + 1e-9]));
+        let config = ArsConfig { lower, upper, ..ArsConfig::default() };
+        let mut ars = Ars::new(config, vec![0.5; 2], 7).unwrap();
+        let scores: Vec<f64> = ars.ask().iter().map(|x| x[0]).collect();
+        ars.tell(&scores).unwrap();
+        let [first, second] = ars.center()[..] else { panic!("two coordinates") };
+        assert!(first > 0.5 && (second - 0.5).abs() <= 1e-9, "{first} and {second}");
+    }
+
+    /// Limits that nothing reaches change no bit.
+    #[test]
+    fn far_limits_change_nothing() {
+        let (lower, upper) = (Some(vec![-1e9; 3]), Some(vec![1e9; 3]));
+        let mut bounded = search(ArsConfig { lower, upper, ..ArsConfig::default() });
+        let mut free = search(ArsConfig::default());
+        for _ in 0..5 {
+            let asked = free.ask();
+            assert_eq!(bounded.ask(), asked);
+            free.tell(&scores(&asked)).unwrap();
+            bounded.tell(&scores(&asked)).unwrap();
+        }
+        assert_eq!(bounded.center(), free.center());
     }
 
     #[test]
@@ -197,7 +295,7 @@ mod tests {
     fn failed_candidates_have_no_say() {
         let config = ArsConfig { directions: 3, top: 3, ..ArsConfig::default() };
         let told = |failed: f64, beside: f64| {
-            let mut ars = search(config);
+            let mut ars = search(config.clone());
             ars.tell(&[1.0, 2.0, failed, beside, 4.0, 3.0]).unwrap();
             ars.center()
         };
@@ -213,7 +311,17 @@ mod tests {
     fn settings_that_describe_no_search() {
         let refused = |config| Ars::new(config, vec![0.0], 1).unwrap_err().to_string();
         let base = ArsConfig::default();
-        assert_eq!(refused(ArsConfig { top: 33, ..base }), "top = 33 is not between 1 and the number of directions");
-        assert_eq!(refused(ArsConfig { noise_std: 0.0, ..base }), "noise_std = 0 is not a positive finite number");
+        assert_eq!(
+            refused(ArsConfig { top: 33, ..base.clone() }),
+            "top = 33 is not between 1 and the number of directions"
+        );
+        let still = ArsConfig { noise_std: 0.0, ..base.clone() };
+        assert_eq!(refused(still), "noise_std = 0 is not a positive finite number");
+        let bounded = |lower: &[f64], upper: &[f64]| {
+            refused(ArsConfig { lower: Some(lower.to_vec()), upper: Some(upper.to_vec()), ..base.clone() })
+        };
+        assert_eq!(bounded(&[-1.0; 2], &[1.0]), "lower = 2 is not as long as the mean");
+        assert_eq!(bounded(&[1.0], &[-1.0]), "upper = -1 is not above the lower bound, at a finite distance");
+        assert_eq!(bounded(&[0.5], &[1.0]), "start = 0 is not inside of the bounds");
     }
 }

@@ -1,7 +1,7 @@
 //! Passes over the rows of a batch, on any number of threads with the same bits.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_core::{Executor, Policy};
 
@@ -47,7 +47,7 @@ struct Shard {
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+    mutex.lock().expect("a pass ends where one of its jobs panics")
 }
 
 impl<P: Policy> Passes<P> {
@@ -76,7 +76,8 @@ impl<P: Policy> Passes<P> {
     ) {
         let (each, count) = jobs(rows);
         lock(&self.idle).iter_mut().for_each(|worker| worker.bound = false);
-        executor.for_each(count, &|i| {
+        // Not `for_each`: what a job that did not run had left in its place would count as its result.
+        executor.map(count, |i| {
             let idle = lock(&self.idle).pop();
             let mut worker = idle.unwrap_or_else(|| Worker {
                 tape: self.policy.tape(BLOCK),

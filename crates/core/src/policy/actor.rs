@@ -3,7 +3,7 @@
 use hwasp_diff::{MlpTape, ProgramTape};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{HardwarePolicy, Policy};
+use super::{HardwarePolicy, ParamKind, Policy};
 use crate::gaussian;
 use crate::streams::Stream;
 
@@ -34,7 +34,7 @@ impl<'p> Actor<'p> {
         let mut controller = policy.controller.tape(max);
         policy.controller.bind(policy.controller_params(params), &mut controller);
         let program = &policy.composition.program;
-        let u: Vec<f64> = params[policy.range("design")].iter().map(|&u| f64::from(u)).collect();
+        let u: Vec<f64> = params[policy.range(ParamKind::Design)].iter().map(|&u| f64::from(u)).collect();
         let mut law = program.tape(max);
         program.bind(&u, &mut law);
         let actions = policy.action_dim();

@@ -4,7 +4,7 @@ use hwasp_diff::{Activation, Program, Scalar, Var};
 
 use super::noise::{Anneal, Noise, Spread};
 use crate::environment::{EnvSpec, Port};
-use crate::hardware::Law;
+use crate::law::Law;
 use crate::placement::{ActionLayout, Placement, PlacementError};
 
 /// Everything that makes a [`HardwarePolicy`](super::HardwarePolicy).

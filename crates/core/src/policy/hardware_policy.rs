@@ -6,7 +6,7 @@ use hwasp_diff::{Activation, Mlp, MlpTape, Program, ProgramTape};
 use rand::RngExt;
 
 use super::compose::{Composition, PolicySpec};
-use super::{ParamGroup, Policy, Rows};
+use super::{ParamGroup, ParamKind, Policy, Rows};
 use crate::design::DesignSpace;
 use crate::environment::{CommandPort, EnvSpec};
 use crate::placement::{Body, PlacementError};
@@ -55,10 +55,12 @@ impl HardwarePolicy {
         let mut groups = Vec::new();
         let mut at = 0;
         let log_stds = if spec.noise.train { composition.layout.len() } else { 0 };
-        for (name, count) in
-            [("controller", controller.param_count()), ("design", composition.free.len()), ("log_std", log_stds)]
-        {
-            groups.push(ParamGroup { name, range: at..at + count });
+        for (kind, count) in [
+            (ParamKind::Controller, controller.param_count()),
+            (ParamKind::Design, composition.free.len()),
+            (ParamKind::LogStd, log_stds),
+        ] {
+            groups.push(ParamGroup { kind, range: at..at + count });
             at += count;
         }
         let commands = env.command.clone();
@@ -92,7 +94,7 @@ impl HardwarePolicy {
     pub fn design(&self, params: &[f32]) -> Vec<f64> {
         let mut design: Vec<f64> =
             self.spec.placements.iter().map(|p| if let crate::Placement::Fixed(v) = p { *v } else { 0.0 }).collect();
-        for (&i, &u) in self.composition.free.iter().zip(&params[self.range("design")]) {
+        for (&i, &u) in self.composition.free.iter().zip(&params[self.range(ParamKind::Design)]) {
             design[i] = self.space().squash(i, f64::from(u));
         }
         design
@@ -105,12 +107,12 @@ impl HardwarePolicy {
 
     /// Where those stand-ins lie in the parameter vector.
     pub fn design_params(&self) -> Range<usize> {
-        self.range("design")
+        self.range(ParamKind::Design)
     }
 
     /// The controller's part of a parameter vector.
     pub fn controller_params<'p>(&self, params: &'p [f32]) -> &'p [f32] {
-        &params[self.range("controller")]
+        &params[self.range(ParamKind::Controller)]
     }
 
     /// The controller.
@@ -128,8 +130,10 @@ impl HardwarePolicy {
         self.composition.program.output_names()
     }
 
-    pub(super) fn range(&self, name: &str) -> Range<usize> {
-        self.groups.iter().find(|g| g.name == name).map_or(0..0, |g| g.range.clone())
+    /// Where the parameters of a kind lie; empty where there are none.
+    pub(super) fn range(&self, kind: ParamKind) -> Range<usize> {
+        let group = self.groups.iter().find(|g| g.kind == kind);
+        group.expect("a policy has a group of every kind, if an empty one").range.clone()
     }
 
     pub(crate) fn body(&self) -> Body {
@@ -222,7 +226,7 @@ impl Policy for HardwarePolicy {
     }
 
     fn log_std_params(&self) -> Option<Range<usize>> {
-        self.spec.noise.train.then(|| self.range("log_std"))
+        self.spec.noise.train.then(|| self.range(ParamKind::LogStd))
     }
 
     fn log_std(&self, params: &[f32], progress: f64, out: &mut [f32]) {
@@ -250,8 +254,8 @@ impl Policy for HardwarePolicy {
     }
 
     fn bind(&self, params: &[f32], tape: &mut PolicyTape) {
-        self.controller.bind(&params[self.range("controller")], &mut tape.controller);
-        self.composition.program.bind(&params[self.range("design")], &mut tape.law);
+        self.controller.bind(&params[self.range(ParamKind::Controller)], &mut tape.controller);
+        self.composition.program.bind(&params[self.range(ParamKind::Design)], &mut tape.law);
     }
 
     fn clear(&self, tape: &mut PolicyTape) {
@@ -289,8 +293,8 @@ impl Policy for HardwarePolicy {
 
     fn gradient(&self, tape: &mut PolicyTape, gradient: &mut [f32]) {
         gradient.fill(0.0);
-        self.controller.gradient(&tape.controller, &mut gradient[self.range("controller")]);
-        self.composition.program.vjp_uniform(&mut tape.law, &mut gradient[self.range("design")]);
+        self.controller.gradient(&tape.controller, &mut gradient[self.range(ParamKind::Controller)]);
+        self.composition.program.vjp_uniform(&mut tape.law, &mut gradient[self.range(ParamKind::Design)]);
     }
 
     fn add_cotangents(&self, tape: &mut PolicyTape, other: &PolicyTape) {
@@ -299,8 +303,8 @@ impl Policy for HardwarePolicy {
     }
 
     fn bind_tangent(&self, tangent: &[f32], tape: &mut PolicyTape) {
-        self.controller.bind_tangent(&tangent[self.range("controller")], &mut tape.controller);
-        self.composition.program.bind_tangent(&tangent[self.range("design")], &mut tape.law);
+        self.controller.bind_tangent(&tangent[self.range(ParamKind::Controller)], &mut tape.controller);
+        self.composition.program.bind_tangent(&tangent[self.range(ParamKind::Design)], &mut tape.law);
     }
 
     fn jvp<'t>(&self, rows: &Rows<'_>, tape: &'t mut PolicyTape) -> &'t [f32] {

@@ -15,11 +15,33 @@ pub use noise::{Anneal, Noise, Spread};
 
 use std::ops::Range;
 
+/// What the parameters of a group are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ParamKind {
+    /// Weights and biases of the controller.
+    Controller,
+    /// Unbounded stand-ins of the design parameters that are not fixed.
+    Design,
+    /// Log standard deviations of the action's components.
+    LogStd,
+}
+
+impl ParamKind {
+    /// Its name in files and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Controller => "controller",
+            Self::Design => "design",
+            Self::LogStd => "log_std",
+        }
+    }
+}
+
 /// Parameters that are treated alike by an optimiser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParamGroup {
-    /// `controller`, `design` or `log_std`.
-    pub name: &'static str,
+    /// What they are.
+    pub kind: ParamKind,
     /// Where they lie in the parameter vector.
     pub range: Range<usize>,
 }

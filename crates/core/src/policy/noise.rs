@@ -1,5 +1,7 @@
 //! How strongly each action component is explored.
 
+use crate::schedule::share_done;
+
 /// A change of the noise over training: geometric from 1 to `ratio` between two fractions of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anneal {
@@ -14,8 +16,7 @@ pub struct Anneal {
 impl Anneal {
     /// What is added to the log standard deviation at `progress`.
     pub fn log_offset(&self, progress: f64) -> f64 {
-        let done = ((progress - self.from) / (self.to - self.from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.ratio.ln() * done
+        self.ratio.ln() * share_done(progress, self.from, self.to)
     }
 }
 

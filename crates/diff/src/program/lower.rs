@@ -17,6 +17,7 @@ pub(super) fn lower(
     let mut constants = Constants::default();
     let mut slots = Vec::with_capacity(nodes.len());
     let (mut uniform_code, mut row_code) = (Vec::new(), Vec::new());
+    let mut recorded = Vec::new();
     for (node, needed) in nodes.iter().zip(needed) {
         let instruction = match *node {
             Node::Uniform(i) => {
@@ -34,7 +35,9 @@ pub(super) fn lower(
             Node::Unary(op, a) => Instruction::Unary(op, constants.slot(a, &slots)),
             Node::Binary(op, a, b) => Instruction::Binary(op, constants.slot(a, &slots), constants.slot(b, &slots)),
         };
-        let slot = if instruction.operands().any(Slot::varies_by_row) {
+        let by_row = instruction.operands().any(Slot::varies_by_row);
+        recorded.push(by_row);
+        let slot = if by_row {
             row_code.push(instruction);
             Slot::Register(row_code.len() - 1)
         } else {
@@ -54,6 +57,7 @@ pub(super) fn lower(
         constants: constants.values,
         uniform_code,
         row_code,
+        recorded,
         outputs,
         held,
         plan,

@@ -88,7 +88,7 @@ fn hardware(graph: &mut Graph, deployed: &Deployed) {
     let ports = deployed.world.law.ports();
     let mut columns = split(graph, COMMAND, names(COMMAND, &ports.command));
     columns.extend(split(graph, STATE, names(STATE, &ports.state)));
-    let efforts = law(graph, &program, &uniforms, &columns);
+    let efforts = law(graph, program, &uniforms, &columns);
     let efforts: Vec<String> = efforts.into_iter().map(|effort| as_column(graph, effort)).collect();
     let efforts: Vec<&str> = efforts.iter().map(String::as_str).collect();
     graph.node_with("Concat", &efforts, &[EFFORT.to_owned()], &[("axis", 1)]);

@@ -3,7 +3,7 @@
 //! Drawing is apart from running, as it must not touch the state of an episode that is under way: even computing what
 //! depends on the state anew would change the next step's last bits.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_core::{End, EnvSpec, Environment, MakeEnvironment, Outcome, Robot, Step, Stream};
 
@@ -57,7 +57,7 @@ impl MakeEnvironment for Filmed {
 }
 
 fn lock(film: &Mutex<Film>) -> MutexGuard<'_, Film> {
-    film.lock().unwrap_or_else(PoisonError::into_inner)
+    film.lock().expect("nothing panics while the film is locked")
 }
 
 /// The robot, and what it does on film.
@@ -105,7 +105,8 @@ impl Environment for Recorder {
         let step = self.robot.step(effort, command);
         // Where the physics failed there is nothing to see.
         if step.end != Some(End::Faulted) {
-            lock(&self.film).stills.push(self.still());
+            let still = self.still();
+            lock(&self.film).stills.push(still);
         }
         step
     }

@@ -1,6 +1,6 @@
 //! What of the grasping tasks can be chosen.
 
-use hwasp_core::Initial;
+use hwasp_core::{Initial, share_done};
 
 use super::GraspError;
 pub use hwasp_tasks::grasp::{Inertia, ShapeKind, Viewpoint};
@@ -47,8 +47,7 @@ impl Ramp {
     /// Its value at this fraction of training.
     pub(super) fn at(&self, progress: f64) -> f64 {
         let [from, to] = self.progress;
-        let done = ((progress - from) / (to - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.first + (self.last - self.first) * done
+        self.first + (self.last - self.first) * share_done(progress, from, to)
     }
 }
 

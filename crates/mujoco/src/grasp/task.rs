@@ -1,5 +1,7 @@
 //! What grasping is about: the observation, the reward and success.
 
+use std::sync::Arc;
+
 use hwasp_core::{EnvSpec, Outcome, Stream, Task};
 use rand::RngExt;
 
@@ -36,15 +38,27 @@ pub struct GraspTask {
     taken: usize,
     /// From the palm to the object as seen from above, at the end of the last step, m.
     beside: f64,
-    kind: &'static str,
+    /// The names of the shapes, in the order of [`ShapeKind::ALL`].
+    kinds: [Arc<str>; ShapeKind::ALL.len()],
+    /// The shape of the object at hand, by its place among them.
+    kind: usize,
     /// How far training has come.
     progress: f64,
 }
 
 impl GraspTask {
     pub(super) fn new(settings: GraspSettings) -> Self {
-        let kind = settings.shapes[0].name();
-        Self { settings, moments: vec![Moment::default(); HOLD_STEPS], taken: 0, beside: 0.0, kind, progress: 1.0 }
+        let kinds = ShapeKind::EACH.map(|kind| Arc::from(kind.name()));
+        let kind = settings.shapes[0] as usize;
+        Self {
+            settings,
+            moments: vec![Moment::default(); HOLD_STEPS],
+            taken: 0,
+            beside: 0.0,
+            kinds,
+            kind,
+            progress: 1.0,
+        }
     }
 
     /// Whether the last steps were a hold.
@@ -84,7 +98,7 @@ impl Task for GraspTask {
         let [from, to] = self.settings.height;
         let above = from + (to - from) * rng.random::<f64>();
         let object = Object::draw(&self.settings, self.progress, rng);
-        self.kind = object.kind.name();
+        self.kind = object.kind as usize;
         self.taken = 0;
         let top = object.bounding_box()[2];
         // Settings were checked: what is drawn from them is a body.
@@ -131,6 +145,6 @@ impl Task for GraspTask {
     }
 
     fn outcome(&self) -> Option<Outcome> {
-        Some(Outcome { kind: self.kind, success: self.success() })
+        Some(Outcome { kind: Arc::clone(&self.kinds[self.kind]), success: self.success() })
     }
 }

@@ -45,7 +45,7 @@ pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Resul
             what: "it left no film or no outcome".into(),
         };
         let (outcome, object) =
-            batch.episodes.first().and_then(|e| e.outcome).zip(film.object.clone()).ok_or_else(missing)?;
+            batch.episodes.first().and_then(|e| e.outcome.clone()).zip(film.object.clone()).ok_or_else(missing)?;
         let undiscounted_return = batch.returns(1.0).first().copied().unwrap_or_default();
         Ok(Take { index, object, success: outcome.success, undiscounted_return, film })
     };

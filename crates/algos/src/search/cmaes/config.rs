@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::search::SearchError;
+use crate::search::{SearchError, check_limits, limits};
 
 /// Settings of [`Cmaes`](super::Cmaes).
 ///
@@ -61,25 +61,9 @@ impl CmaesConfig {
         if self.restarts > MAX_RESTARTS {
             return setting("restarts", f64::from(self.restarts), "at most 20");
         }
-        for (name, bound) in [("lower", &self.lower), ("upper", &self.upper)] {
-            if let Some(bound) = bound
-                && bound.len() != n
-            {
-                return setting(name, bound.len() as f64, "as long as the mean");
-            }
-        }
+        check_limits(self.lower.as_deref(), self.upper.as_deref(), n)?;
         for (i, &m) in mean.iter().enumerate() {
             let (lower, upper) = self.bound(i);
-            // A width that overflows leaves no arithmetic inside.
-            if lower.is_finite() && upper.is_finite() && !((upper - lower).is_finite() && lower < upper) {
-                return setting("upper", upper, "above the lower bound, at a finite distance");
-            }
-            if lower.is_nan() || lower == f64::INFINITY {
-                return setting("lower", lower, "a number or -inf");
-            }
-            if upper.is_nan() || upper == f64::NEG_INFINITY {
-                return setting("upper", upper, "a number or inf");
-            }
             if m.abs() > 1e150 || !(lower..=upper).contains(&m) {
                 return setting("mean", m, "a number inside of the bounds, below 1e150");
             }
@@ -89,9 +73,7 @@ impl CmaesConfig {
 
     /// Lower and upper limit of coordinate `i`.
     pub(super) fn bound(&self, i: usize) -> (f64, f64) {
-        let lower = self.lower.as_ref().map_or(f64::NEG_INFINITY, |b| b[i]);
-        let upper = self.upper.as_ref().map_or(f64::INFINITY, |b| b[i]);
-        (lower, upper)
+        limits(self.lower.as_deref(), self.upper.as_deref(), i)
     }
 
     /// λ of the first run for `n` coordinates (eq. 48).

@@ -1,7 +1,7 @@
 //! The policy, its divergence and its surrogate once more, in `f64` and over the whole batch at once.
 
 use hwasp_core::gaussian::LOG_TWO_PI;
-use hwasp_core::{Batch, HardwarePolicy, Policy};
+use hwasp_core::{Batch, HardwarePolicy, ParamKind, Policy};
 
 pub(super) struct Model<'a> {
     policy: &'a HardwarePolicy,
@@ -34,11 +34,11 @@ impl<'a> Model<'a> {
     /// Means at `params`, and what the gradient of Σ cotangent·mean is there.
     fn means(&self, params: &[f64], cotangent: impl FnOnce(&Means) -> Vec<f64>) -> (Means, Vec<f64>) {
         let (policy, n) = (self.policy, self.batch.rows());
-        let range = |name: &str| policy.groups().iter().find(|g| g.name == name).unwrap().range.clone();
+        let range = |kind| policy.groups().iter().find(|g| g.kind == kind).unwrap().range.clone();
         let (mlp, program) = (policy.controller(), policy.program());
         let (mut network, mut law) = (mlp.tape::<f64>(n), program.tape::<f64>(n));
-        mlp.bind(&params[range("controller")], &mut network);
-        program.bind(&params[range("design")], &mut law);
+        mlp.bind(&params[range(ParamKind::Controller)], &mut network);
+        program.bind(&params[range(ParamKind::Design)], &mut law);
         mlp.forward(&self.obs, n, &mut network);
         let mut columns = self.columns.clone();
         let (output, width) = network.output();
@@ -56,8 +56,8 @@ impl<'a> Model<'a> {
         let pulled: Vec<f64> = (0..n * commands).map(|k| moved[k % commands * n + k / commands]).collect();
         mlp.vjp(&self.obs, &pulled, &mut network);
         let mut gradient = vec![0.0; params.len()];
-        mlp.gradient(&network, &mut gradient[range("controller")]);
-        program.vjp_uniform(&mut law, &mut gradient[range("design")]);
+        mlp.gradient(&network, &mut gradient[range(ParamKind::Controller)]);
+        program.vjp_uniform(&mut law, &mut gradient[range(ParamKind::Design)]);
         (mean, gradient)
     }
 

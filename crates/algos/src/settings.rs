@@ -23,10 +23,20 @@ impl Settings for PpoConfig {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         fields.number("discount", &mut self.discount, 0.0..=1.0, "gamma");
         fields.number("gae_lambda", &mut self.gae_lambda, 0.0..=1.0, "lambda of generalised advantages");
-        fields.number("clip_ratio", &mut self.clip_ratio, 1e-3..=1.0, "epsilon: how far the probability ratio may leave 1");
+        fields.number(
+            "clip_ratio",
+            &mut self.clip_ratio,
+            1e-3..=1.0,
+            "epsilon: how far the probability ratio may leave 1",
+        );
         fields.count("epochs", &mut self.epochs, 1..=1000, "passes over a batch");
         fields.limits("0 to the rows of an iteration");
-        fields.count("minibatch_rows", &mut self.minibatch_rows, 0..=MOST_ROWS, "rows of a minibatch; 0: the whole batch");
+        fields.count(
+            "minibatch_rows",
+            &mut self.minibatch_rows,
+            0..=MOST_ROWS,
+            "rows of a minibatch; 0: the whole batch",
+        );
         fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's");
         let about = "fraction of it at the end of a linear decay";
         fields.number("learning_rate_final", &mut self.learning_rate_final, 0.0..=1.0, about);
@@ -118,7 +128,13 @@ impl Settings for BaselineSettings {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         let mlp = &mut self.mlp;
         fields.choice("kind", &mut self.kind, "what estimates values");
-        fields.counts("hidden", &mut mlp.hidden, MOST_LAYERS, 1..=WIDEST_LAYER, "widths of the network's hidden layers");
+        fields.counts(
+            "hidden",
+            &mut mlp.hidden,
+            MOST_LAYERS,
+            1..=WIDEST_LAYER,
+            "widths of the network's hidden layers",
+        );
         fields.number("learning_rate", &mut mlp.learning_rate, RATES, "Adam's");
         let about = "fraction of it at the end of a linear decay";
         fields.default("that of `[ppo]` under PPO, else 1");
@@ -143,11 +159,9 @@ impl BaselineSettings {
     pub fn config(&self) -> BaselineConfig {
         match self.kind {
             BaselineKind::Mlp => BaselineConfig::Mlp(self.mlp.clone()),
-            BaselineKind::Linear => BaselineConfig::Linear {
-                ridge: self.ridge,
-                privileged: self.mlp.privileged,
-                context: self.mlp.context,
-            },
+            BaselineKind::Linear => {
+                BaselineConfig::Linear { ridge: self.ridge, privileged: self.mlp.privileged, context: self.mlp.context }
+            }
         }
     }
 }
@@ -225,7 +239,11 @@ impl ArsSettings {
 impl Settings for ArsSettings {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         fields.default("ars: \"v2-t\", ars-rl: \"v1-t\"");
-        fields.choice("variant", &mut self.variant, "with -t the best directions count, with 2 what was seen scales the input");
+        fields.choice(
+            "variant",
+            &mut self.variant,
+            "with -t the best directions count, with 2 what was seen scales the input",
+        );
         fields.default("ars: 32, ars-rl: 4");
         let about = "directions of a generation, each tried both ways";
         fields.count("directions", &mut self.config.directions, 1..=MOST_CANDIDATES, about);

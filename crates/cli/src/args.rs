@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use hwasp_experiment::{Method, TrainSettings};
 use hwasp_export::{Kind, MOST_SAMPLES};
 use hwasp_plot::XAxis;
 use hwasp_report::play;
-use hwasp_training::spec::{Method, TrainSpec};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -352,7 +352,7 @@ pub(crate) struct HeldOutArgs {
 
 impl HeldOutArgs {
     /// How many episodes, and the root seed of their starts.
-    pub(crate) fn asked(&self, train: &TrainSpec) -> (u64, u64) {
+    pub(crate) fn asked(&self, train: &TrainSettings) -> (u64, u64) {
         (self.episodes.unwrap_or(train.evaluation_episodes as u64), self.seed.unwrap_or(train.evaluation_seed))
     }
 }

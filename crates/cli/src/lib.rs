@@ -3,15 +3,9 @@
 //! ```no_run
 //! use std::process::ExitCode;
 //!
-//! use hwasp_training::spec::OwnProblem;
-//!
-//! fn problem() -> OwnProblem {
-//!     # unimplemented!()
-//!     // a law, a plant and a task: `hwasp init` writes one to begin with
-//! }
-//!
+//! // With `.with(Lamp)` for a problem of one's own: `hwasp init` writes one to begin with.
 //! fn main() -> ExitCode {
-//!     hwasp_cli::run([problem()])
+//!     hwasp_cli::run(&hwasp_builtin::catalogue())
 //! }
 //! ```
 
@@ -30,17 +24,17 @@ mod report;
 use std::process::ExitCode;
 
 use clap::Parser;
-use hwasp_training::spec::{self, OwnProblem};
+use hwasp_experiment::Catalogue;
 
 use args::{Args, Command};
 use failure::Failure;
 
-/// Runs the program: reads its command line, does what it asks for, and says how that went. Experiment files may name the
-/// `problems` beside those that come with the program.
-pub fn run(problems: impl IntoIterator<Item = OwnProblem>) -> ExitCode {
+/// Runs the program: reads its command line, does what it asks for, and says how that went. Experiment files may name what is
+/// in the `catalogue`.
+pub fn run(catalogue: &Catalogue) -> ExitCode {
     let args = Args::parse();
     log::begin(args.log_format, args.log_level, args.command.quiet());
-    match spec::register(problems).map_err(Failure::from).and_then(|()| obey(&args.command)) {
+    match obey(&args.command, catalogue) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             tracing::error!("{}", failure.text());
@@ -49,23 +43,23 @@ pub fn run(problems: impl IntoIterator<Item = OwnProblem>) -> ExitCode {
     }
 }
 
-fn obey(command: &Command) -> Result<(), Failure> {
+fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
     match command {
-        Command::Train(train) => commands::train::run(train),
-        Command::Eval(eval) => commands::eval::run(eval),
-        Command::Design(design) => commands::design::run(design),
-        Command::Export(export) => commands::export::run(export),
-        Command::Parts(parts) => commands::parts::run(parts),
-        Command::Tolerances(tolerances) => commands::tolerances::run(tolerances),
-        Command::Replay(replay) => commands::replay::run(replay),
-        Command::Play(play) => commands::play::run(play),
-        Command::Plot(plot) => commands::plot::run(plot),
-        Command::Report(report) => commands::report::run(report),
-        Command::Compare(compare) => commands::compare::run(compare),
-        Command::Reproduce(reproduce) => commands::reproduce::run(reproduce),
-        Command::Check(check) => commands::check::run(check),
-        Command::List => commands::list::run(),
-        Command::Graph(graph) => commands::graph::run(graph),
+        Command::Train(train) => commands::train::run(train, catalogue),
+        Command::Eval(eval) => commands::eval::run(eval, catalogue),
+        Command::Design(design) => commands::design::run(design, catalogue),
+        Command::Export(export) => commands::export::run(export, catalogue),
+        Command::Parts(parts) => commands::parts::run(parts, catalogue),
+        Command::Tolerances(tolerances) => commands::tolerances::run(tolerances, catalogue),
+        Command::Replay(replay) => commands::replay::run(replay, catalogue),
+        Command::Play(play) => commands::play::run(play, catalogue),
+        Command::Plot(plot) => commands::plot::run(plot, catalogue),
+        Command::Report(report) => commands::report::run(report, catalogue),
+        Command::Compare(compare) => commands::compare::run(compare, catalogue),
+        Command::Reproduce(reproduce) => commands::reproduce::run(reproduce, catalogue),
+        Command::Check(check) => commands::check::run(check, catalogue),
+        Command::List => commands::list::run(catalogue),
+        Command::Graph(graph) => commands::graph::run(graph, catalogue),
         Command::Init(init) => commands::init::run(init),
     }
 }

@@ -3,5 +3,5 @@
 #![forbid(unsafe_code)]
 
 fn main() -> std::process::ExitCode {
-    hwasp_cli::run([])
+    hwasp_cli::run(&hwasp_builtin::catalogue())
 }

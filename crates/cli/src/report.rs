@@ -7,14 +7,14 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_core::Policy;
+use hwasp_experiment::Experiment;
 use hwasp_export::{ExportFile, Kind};
 use hwasp_runs::text::{grouped, quantity};
 use hwasp_runs::{Replay, Summary};
-use hwasp_training::spec::Spec;
 use hwasp_training::{Assembly, Checkpoint, Evaluation, MeanInterval};
 
 /// The line before a training.
-pub(crate) fn beginning(spec: &Spec, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
+pub(crate) fn beginning(spec: &Experiment, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
     let steps = grouped(spec.train.env_steps);
     let (verb, steps) = match from {
         Some(from) => ("resuming", format!("after {} of {steps}", grouped(from.env_steps))),
@@ -122,7 +122,7 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
 }
 
 /// What was exported, and what there is not of this run.
-pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile], left_out: &[Kind]) -> String {
+pub(crate) fn exported(spec: &Experiment, out: &Path, files: &[ExportFile], left_out: &[Kind]) -> String {
     let (name, method, seed) = (&spec.name, spec.method.name(), spec.seed);
     let mut text = format!("{name} · {method} · seed {seed}, into {}:\n", out.display());
     for ExportFile { name, contents } in files {
@@ -137,7 +137,7 @@ pub(crate) fn exported(spec: &Spec, out: &Path, files: &[ExportFile], left_out: 
 }
 
 /// A sound experiment.
-pub(crate) fn experiment(spec: &Spec, assembly: &Assembly) -> String {
+pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
     let policy = &assembly.policy;
     let training = match assembly.generation() {
         Some((popsize, each)) => {

@@ -103,7 +103,11 @@ impl Catalogue {
     /// Where its name cannot be, or is taken.
     pub fn with_learner(mut self, learner: impl LearnerKind + 'static) -> Result<Self, CatalogueError> {
         let name = learner.name();
-        check_name("learner", name, SECTIONS.contains(&name) || self.learners.iter().any(|other| other.name() == name))?;
+        check_name(
+            "learner",
+            name,
+            SECTIONS.contains(&name) || self.learners.iter().any(|other| other.name() == name),
+        )?;
         self.learners.push(Arc::new(learner));
         Ok(self)
     }

@@ -1,7 +1,7 @@
 //! `[design]`: where each design parameter sits and where it begins.
 
 use hwasp_core::Dimension;
-use hwasp_settings::{Choice, Fields, Item, Settings, choice};
+use hwasp_settings::{Fields, Item, Settings, choice};
 
 use crate::initial::{InitialDesign, read_initial};
 use crate::method::Method;
@@ -95,7 +95,9 @@ impl Settings for DesignSettings {
         }
         let about = "`law` (as the problem's law says; of those that come with the program `logit`), `logit`, `middle`, a quantity, or \
                      one for each group, `{ thumb_distal_radius = \"6 mm\" }`; groups left out begin in the middle";
-        fields.default("\"law\", or \"logit\" where `logit_half_width` is set").limits("inside of the parameter's limits");
+        fields
+            .default("\"law\", or \"logit\" where `logit_half_width` is set")
+            .limits("inside of the parameter's limits");
         let (initial, groups) = (&mut self.initial, &self.groups);
         fields.open("initial", about, Some(initial.item()), |section, node| {
             *initial = read_initial(section, node, groups);

@@ -1,7 +1,7 @@
 //! An experiment in which nothing is left open, and how layers become one.
 
 use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
-use hwasp_settings::{Choice, Faults, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
+use hwasp_settings::{Faults, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
 
 use crate::catalogue::Catalogue;
 use crate::controller::ControllerSettings;
@@ -19,7 +19,7 @@ pub(crate) const LONGEST_NAME: usize = 100;
 pub(crate) const LONGEST_DESCRIPTION: usize = 2000;
 
 /// An experiment with every field resolved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Experiment {
     /// What plots and folders call it.
     pub name: String,
@@ -49,9 +49,32 @@ pub struct Experiment {
     pub ars: ArsSettings,
     /// How long, in which portions.
     pub train: TrainSettings,
+    catalogue: Catalogue,
+}
+
+impl PartialEq for Experiment {
+    /// Whether they are the same trainings, wherever their problems came from.
+    fn eq(&self, other: &Self) -> bool {
+        let top = |e: &Self| (e.name.clone(), e.description.clone(), e.method, e.seed);
+        top(self) == top(other)
+            && self.task == other.task
+            && self.controller == other.controller
+            && self.design == other.design
+            && self.noise == other.noise
+            && self.learner == other.learner
+            && self.baseline == other.baseline
+            && self.search == other.search
+            && (&self.cmaes, &self.ars) == (&other.cmaes, &other.ars)
+            && self.train == other.train
+    }
 }
 
 impl Experiment {
+    /// What it was resolved with: to read others that lie beside it.
+    pub fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
+    }
+
     /// The discount that returns are told and candidates scored by: the learner's.
     pub fn discount(&self) -> f64 {
         self.learner.discount()
@@ -114,12 +137,7 @@ pub fn resolve(layers: Layers, method: Option<&str>, catalogue: &Catalogue) -> R
 }
 
 /// Reads merged tables.
-fn read_with(
-    reader: Reader<'_>,
-    table: &Table,
-    method: Method,
-    catalogue: &Catalogue,
-) -> (Option<Experiment>, Faults) {
+fn read_with(reader: Reader<'_>, table: &Table, method: Method, catalogue: &Catalogue) -> (Option<Experiment>, Faults) {
     let experiment = read_experiment(&reader, table, method, catalogue);
     (experiment, reader.into_errors())
 }
@@ -182,6 +200,7 @@ fn read_experiment<'r>(
         cmaes,
         ars,
         train,
+        catalogue: catalogue.clone(),
     })
 }
 

@@ -36,12 +36,8 @@ impl InitialDesign {
     /// Every group at a value of its own, SI; the values are in the order of the groups.
     pub fn at(groups: &[Group], values: &[f64]) -> Self {
         let only = groups.len() == 1;
-        let initial = |(g, &value): (&Group, &f64)| InitialValue {
-            group: g.name.clone(),
-            value,
-            dimension: g.dimension,
-            only,
-        };
+        let initial =
+            |(g, &value): (&Group, &f64)| InitialValue { group: g.name.clone(), value, dimension: g.dimension, only };
         let mut values: Vec<InitialValue> = groups.iter().zip(values).map(initial).collect();
         // As they are read from a file.
         values.sort_by(|a, b| a.group.cmp(&b.group));
@@ -115,7 +111,12 @@ pub(crate) fn read_initial(section: &Section<'_>, node: &Node, groups: &[Group])
         (_, groups) => {
             let first = groups.first().map_or("stiffness", |group| &group.name);
             let hint = format!("name the parameters: {{ {first} = … }}");
-            section.wrong("initial", node, &format!("is one value for {} different parameters", groups.len()), Some(hint));
+            section.wrong(
+                "initial",
+                node,
+                &format!("is one value for {} different parameters", groups.len()),
+                Some(hint),
+            );
             InitialDesign::Law
         }
     }

@@ -28,7 +28,7 @@ pub use experiment::{Experiment, resolve};
 pub use hwasp_settings::{Choice, Excerpt, Fault, Faults, LONGEST_FILE, Layers};
 pub use initial::{InitialDesign, InitialValue};
 pub use learner::LearnerSettings;
-pub use load::load;
+pub use load::{EXPERIMENT, load};
 pub use method::Method;
 pub use noise::NoiseSettings;
 pub use placements::PlacedRange;

@@ -9,8 +9,8 @@ use hwasp_settings::{Faults, LONGEST_FILE, Layers, listed, nearest};
 
 use crate::catalogue::Catalogue;
 
-/// The experiment in a run folder.
-const EXPERIMENT: &str = "experiment.toml";
+/// What the experiment in a run folder is called.
+pub const EXPERIMENT: &str = "experiment.toml";
 
 /// An experiment by its name, or the file at a path (anything that ends in `.toml` or exists).
 pub fn load(name_or_path: &str, catalogue: &Catalogue) -> Result<Layers, Faults> {

@@ -82,9 +82,14 @@ impl NoiseSettings {
             .open("effort", "of the effort, where a parameter sits in the graph", written(*effort), |section, node| {
                 read(effort, "effort", example, section, node);
             });
-        fields.limits("as above").open("effort_final", "annealed geometrically to this", written(*last), |section, node| {
-            read(last, "effort_final", 0.01 * example, section, node);
-        });
+        fields.limits("as above").open(
+            "effort_final",
+            "annealed geometrically to this",
+            written(*last),
+            |section, node| {
+                read(last, "effort_final", 0.01 * example, section, node);
+            },
+        );
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use hwasp_settings::text::shorten;
-use hwasp_settings::{Choice, Item, Keys, Node, Section, Value};
+use hwasp_settings::{Item, Keys, Node, Section, Value};
 
 use crate::design::{Group, Place};
 

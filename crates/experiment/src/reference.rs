@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
 use hwasp_core::Dimension;
-use hwasp_settings::{Choice, Field, Kind, described, object_schema};
+use hwasp_settings::{Field, Kind, described, object_schema};
 use serde_json::{Map, Value, json};
 
 use crate::catalogue::Catalogue;
@@ -94,7 +94,9 @@ pub fn reference(catalogue: &Catalogue) -> String {
         let keys = |fields: &[Field]| fields.iter().map(|field| field.key.clone()).collect::<Vec<_>>();
         match problems.iter_mut().find(|(_, known)| keys(known) == keys(&fields) && !fields.is_empty()) {
             Some((names, known)) => {
-                for (known, field) in known.iter_mut().zip(&fields).filter(|(known, field)| known.default != field.default) {
+                for (known, field) in
+                    known.iter_mut().zip(&fields).filter(|(known, field)| known.default != field.default)
+                {
                     known.default = format!("{} ({}: {})", known.default, problem.name(), field.default);
                 }
                 names.push(problem.name());
@@ -114,7 +116,10 @@ pub fn reference(catalogue: &Catalogue) -> String {
         section(&format!("### `[{name}]`"), &fields);
     }
     // A table of nothing is no table.
-    text.replace(" there is nothing more to set.\n\n| key | default | meaning | limits |\n|---|---|---|---|\n", " there is nothing more to set.\n")
+    text.replace(
+        " there is nothing more to set.\n\n| key | default | meaning | limits |\n|---|---|---|---|\n",
+        " there is nothing more to set.\n",
+    )
 }
 
 /// The JSON Schema of experiment files: editors complete and check them by it.

@@ -70,7 +70,12 @@ impl Settings for TrainSettings {
             fields.default("4 000 000").limits("one iteration to 1e12");
             fields.integer("env_steps", &mut env_steps, 1..=LONGEST, "simulator steps of the whole training");
         }
-        fields.count("episodes_per_iteration", &mut self.episodes_per_iteration, 1..=100_000, "episodes between updates");
+        fields.count(
+            "episodes_per_iteration",
+            &mut self.episodes_per_iteration,
+            1..=100_000,
+            "episodes between updates",
+        );
         fields.default("200").limits("1 to the horizon");
         fields.count("episode_steps", &mut self.episode_steps, 1..=100_000, "training episodes are cut to this");
         if fields.reads() {
@@ -98,10 +103,7 @@ impl TrainSettings {
             )
         });
         fields.check("episodes_per_iteration", rows <= MOST_ROWS, || {
-            (
-                format!("the {portion} are more than {MOST_ROWS}"),
-                "take fewer or shorter episodes per iteration".into(),
-            )
+            (format!("the {portion} are more than {MOST_ROWS}"), "take fewer or shorter episodes per iteration".into())
         });
         let sound = fields.sound(&["env_steps", "episodes_per_iteration", "episode_steps"]);
         let given = self.env_steps;

@@ -2,13 +2,13 @@
 
 use hwasp_core::{Dimension, Port};
 use hwasp_diff::Activation;
+use hwasp_problem::Role;
 use hwasp_runs::files::json;
 use serde::Serialize;
 
 use crate::deployed::Deployed;
 use crate::error::ExportError;
 use crate::file::ExportFile;
-use crate::meaning::{Role, meaning};
 use crate::model::Models;
 
 /// The sidecar of every exported controller.
@@ -20,7 +20,7 @@ pub(super) struct Contract {
     format: &'static str,
     hwasp_version: &'static str,
     experiment: String,
-    task: &'static str,
+    task: String,
     method: &'static str,
     seed: u64,
     control: Control,
@@ -56,7 +56,7 @@ struct Quantity {
     name: String,
     unit: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    meaning: Option<&'static str>,
+    meaning: Option<String>,
 }
 
 /// What the controller sees; it works with (observation - center)/scale.
@@ -90,11 +90,11 @@ struct Designed {
 impl Contract {
     pub(super) fn new(deployed: &Deployed) -> Self {
         let Deployed { spec, env, design, .. } = deployed;
-        let policy = deployed.policy.spec();
+        let (policy, words) = (deployed.policy.spec(), &spec.task.built().words);
         let quantity = |role, name: &str, dimension: Dimension| Quantity {
             name: name.to_owned(),
             unit: dimension.si(),
-            meaning: meaning(&spec.task.problem, role, name),
+            meaning: words.meaning(role, name).map(str::to_owned),
         };
         let all = |role, ports: &[Port]| -> Vec<Quantity> {
             ports.iter().map(|port| quantity(role, &port.name, port.dimension)).collect()
@@ -114,7 +114,7 @@ impl Contract {
             format: "hwasp-contract-1",
             hwasp_version: env!("CARGO_PKG_VERSION"),
             experiment: spec.name.clone(),
-            task: spec.task.name(),
+            task: spec.task.name().to_owned(),
             method: spec.method.name(),
             seed: spec.seed,
             control: Control { period_s: env.time_step, rate_hz: 1.0 / env.time_step, horizon_steps: env.horizon },

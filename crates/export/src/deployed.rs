@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hwasp_core::{Actor, EnvSpec, HardwarePolicy};
 use hwasp_diff::Activation;
-use hwasp_training::spec::Spec;
+use hwasp_experiment::Experiment;
 use hwasp_training::{AssembleError, Assembly, World};
 
 /// Rows in which [`Deployed::act`] works.
@@ -13,7 +13,7 @@ const BLOCK: usize = 64;
 /// The deterministic controller on the design as built: what `hwasp eval` evaluates. It is the same for all methods, for
 /// nothing of the design is left to move: where the design was in the graph or in the action, it is fixed now.
 pub(super) struct Deployed {
-    pub(super) spec: Spec,
+    pub(super) spec: Experiment,
     pub(super) world: World,
     pub(super) env: EnvSpec,
     pub(super) policy: Arc<HardwarePolicy>,
@@ -35,10 +35,10 @@ pub(super) struct Layer<'a> {
 
 impl Deployed {
     pub(super) fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
-        let world = assembly.problem.deployment.clone();
-        let design = assembly.problem.training.law.as_built(&assembly.policy.design(params));
+        let world = assembly.worlds.deployment.clone();
+        let design = assembly.worlds.training.law.as_built(&assembly.policy.design(params));
         Ok(Self {
-            spec: assembly.spec().clone(),
+            spec: assembly.experiment().clone(),
             env: world.make.make(None).spec().clone(),
             policy: Arc::new(assembly.deployed(&design)?),
             params: assembly.policy.controller_params(params).to_vec(),

@@ -31,7 +31,7 @@ pub enum ExportError {
         /// The form.
         kind: &'static str,
         /// The problem.
-        problem: &'static str,
+        problem: String,
     },
     /// A hand that cannot be built.
     #[error(transparent)]

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use hwasp_experiment::Experiment;
 use hwasp_runs::files::{Disk, Files, json, read_limited, replace, told};
 use hwasp_runs::io_error;
-use hwasp_training::spec::Spec;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ExportError;
@@ -29,7 +29,7 @@ struct Manifest {
 }
 
 impl Manifest {
-    fn new(spec: &Spec) -> Self {
+    fn new(spec: &Experiment) -> Self {
         Self {
             format: FORMAT.to_owned(),
             hwasp_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -47,7 +47,7 @@ impl Manifest {
 }
 
 /// Writes files of a run into a folder, which is created where it is missing.
-pub(super) fn write(folder: &Path, spec: &Spec, files: &[ExportFile]) -> Result<(), ExportError> {
+pub(super) fn write(folder: &Path, spec: &Experiment, files: &[ExportFile]) -> Result<(), ExportError> {
     let mut manifest = Manifest::new(spec);
     if let Some(before) = read(folder)? {
         if before.run() != manifest.run() {

@@ -1,8 +1,8 @@
 //! What can be exported.
 
-use hwasp_training::spec::Spec;
+use hwasp_experiment::Experiment;
 
-use crate::mechanism;
+use hwasp_workshop::design::hand_of;
 
 /// What can be exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +42,8 @@ impl Kind {
     }
 
     /// Whether a run of this experiment has it: only hands have a mechanism to be written.
-    pub fn is_of(self, spec: &Spec) -> bool {
+    pub fn is_of(self, spec: &Experiment) -> bool {
         let of_mechanism = matches!(self, Self::Mjcf | Self::Urdf | Self::Stl | Self::Scad);
-        !of_mechanism || mechanism::hand(spec).is_some()
+        !of_mechanism || hand_of(spec).is_some()
     }
 }

@@ -13,7 +13,6 @@ mod export;
 mod file;
 mod folder;
 mod kind;
-mod meaning;
 mod mechanism;
 mod model;
 mod onnx;

@@ -3,17 +3,8 @@
 //! Of a finished run `experiment.toml` and `design.toml` are enough; neither the engine nor the policy is asked.
 
 use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, HandError, MjcfOptions, Stock, mjcf, parts, scad, urdf};
-use hwasp_training::spec::{Problem, Spec};
 
 use crate::file::ExportFile;
-
-/// The hand that an experiment is about, if it is about one: everything about it that is not designed.
-pub(super) fn hand(spec: &Spec) -> Option<HandDescription> {
-    match &spec.task.problem {
-        Problem::ZGrasp(problem) | Problem::SpatialGrasp(problem) => Some(problem.hand()),
-        _ => None,
-    }
-}
 
 /// A hand and its design, SI.
 pub(super) struct Mechanism {

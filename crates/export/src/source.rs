@@ -3,33 +3,33 @@
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
-use hwasp_runs::{DESIGN, RunError, SavedRun, saved_spec};
-use hwasp_training::spec::Spec;
-use hwasp_workshop::design::DesignReport;
+use hwasp_experiment::{Catalogue, Experiment};
+use hwasp_runs::{DESIGN, RunError, SavedRun, saved_experiment};
+use hwasp_workshop::design::{DesignReport, hand_of};
 
 use crate::contract::Contract;
 use crate::deployed::Deployed;
 use crate::error::ExportError;
 use crate::file::ExportFile;
 use crate::kind::Kind;
-use crate::mechanism::{self, Mechanism};
+use crate::mechanism::Mechanism;
 
 /// A run to export from. What a kind does not need is not read: the experiment is there at once, the trained policy when it
 /// is asked for.
 pub struct Source {
     path: PathBuf,
-    spec: Spec,
+    spec: Experiment,
     deployed: OnceCell<Deployed>,
 }
 
 impl Source {
     /// Opens a run folder.
-    pub fn open(path: &Path) -> Result<Self, RunError> {
-        Ok(Self { path: path.to_owned(), spec: saved_spec(path, &[])?, deployed: OnceCell::new() })
+    pub fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
+        Ok(Self { path: path.to_owned(), spec: saved_experiment(path, &[], catalogue)?, deployed: OnceCell::new() })
     }
 
     /// Its experiment.
-    pub fn spec(&self) -> &Spec {
+    pub fn spec(&self) -> &Experiment {
         &self.spec
     }
 
@@ -38,7 +38,7 @@ impl Source {
         if let Some(deployed) = self.deployed.get() {
             return Ok(deployed);
         }
-        let saved = SavedRun::open(&self.path)?;
+        let saved = SavedRun::open(&self.path, self.spec.catalogue())?;
         let params = saved.params()?;
         let deployed = Deployed::new(saved.assembly(), &params)?;
         Ok(self.deployed.get_or_init(|| deployed))
@@ -58,14 +58,17 @@ impl Source {
 
     /// The mechanism, to be written as `kind`.
     pub(crate) fn mechanism(&self, kind: Kind) -> Result<Mechanism, ExportError> {
-        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name() };
-        let hand = mechanism::hand(&self.spec).ok_or_else(none)?;
+        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name().to_owned() };
+        let hand = hand_of(&self.spec).cloned().ok_or_else(none)?;
         if !self.path.join(DESIGN).is_file() {
             // Of a training that did not come to its end.
             return Ok(Mechanism::new(hand, &self.deployed()?.design));
         }
-        let design: Vec<f64> =
-            DesignReport::open(&self.path)?.groups.into_iter().flat_map(|group| group.group.as_built).collect();
+        let design: Vec<f64> = DesignReport::open(&self.path, self.spec.catalogue())?
+            .groups
+            .into_iter()
+            .flat_map(|group| group.group.as_built)
+            .collect();
         Ok(Mechanism::new(hand, &design))
     }
 }

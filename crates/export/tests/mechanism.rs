@@ -32,7 +32,6 @@ fn number(node: Node<'_, '_>, key: &str) -> f64 {
 }
 
 /// Loads the file anew and grasps with it: the same episodes come out the same. All 400 of them with `HWASP_EXHAUSTIVE=1`.
-#[cfg(feature = "mujoco")]
 #[test]
 fn the_written_model_grasps_as_the_run_does() {
     use hwasp_core::Threads;
@@ -41,7 +40,7 @@ fn the_written_model_grasps_as_the_run_does() {
 
     let episodes = if std::env::var_os("HWASP_EXHAUSTIVE").is_some() { 400 } else { 32 };
     let saved = SavedRun::open(&shipped("z-grasp")).unwrap();
-    let (params, seed) = (saved.params().unwrap(), saved.assembly().spec().train.evaluation_seed);
+    let (params, seed) = (saved.params().unwrap(), saved.assembly().experiment().train.evaluation_seed);
     let executor = Threads::new(2).unwrap();
     let native = evaluate_native(saved.assembly(), &params, (episodes, seed), &executor).unwrap();
 

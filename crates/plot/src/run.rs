@@ -26,7 +26,7 @@ pub fn curves_svg(saved: &SavedRun) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Er
 /// The learning curve of a run, labelled with experiment and method.
 pub fn saved_curve(saved: &SavedRun, axis: XAxis) -> Result<Curve, RunError> {
     let table = saved.metrics()?;
-    let spec = saved.assembly().spec();
+    let spec = saved.assembly().experiment();
     let label = format!("{} · {}", spec.name, spec.method.name());
     Ok(Curve::from_table(label, &table, axis, spec.train.nominal_steps))
 }
@@ -34,7 +34,7 @@ pub fn saved_curve(saved: &SavedRun, axis: XAxis) -> Result<Curve, RunError> {
 /// Axis texts, units and known optima for pictures of such runs.
 pub fn plot_options(assembly: &Assembly, title: String) -> PlotOptions {
     let mut panels = vec![return_text()];
-    for (group, optimum) in assembly.policy.space().groups().iter().zip(&assembly.problem.optimum) {
+    for (group, optimum) in assembly.policy.space().groups().iter().zip(&assembly.worlds.optimum) {
         // The curve shows the design as trained; the optimum is of the design as built.
         let optimum = optimum.filter(|_| trains_what_is_built(assembly));
         panels.push(total_text((&group.name, group.count), (group.dimension.si(), group.hi), optimum));
@@ -46,7 +46,7 @@ pub fn plot_options(assembly: &Assembly, title: String) -> PlotOptions {
 fn trains_what_is_built(assembly: &Assembly) -> bool {
     let space = assembly.policy.space();
     let middle: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
-    assembly.problem.training.law.as_built(&middle) == middle
+    assembly.worlds.training.law.as_built(&middle) == middle
 }
 
 /// The axis text of the return.

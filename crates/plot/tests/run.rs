@@ -19,7 +19,7 @@ fn a_finished_run_has_its_curves() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("run-with-curves");
     let _ = fs::remove_dir_all(&path);
     let provenance = Provenance::new(vec!["test".into()], 1, 0);
-    let mut folder = RunFolder::create(&path, assembly.spec(), &provenance, Keeping::default()).unwrap();
+    let mut folder = RunFolder::create(&path, assembly.experiment(), &provenance, Keeping::default()).unwrap();
     let trained = train(&assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
     folder.finish(&assembly, &trained, &curves_svg).unwrap();
     let svg = fs::read_to_string(path.join("curves.svg")).unwrap();

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use hwasp_core::{Law, MakeEnvironment};
 
+use crate::AnyError;
 use crate::mechanism::Mechanism;
 use crate::words::Words;
 use crate::world::World;
-use crate::AnyError;
 
 /// From a design (SI) to the world that comes nearest to the built robot, in which the law may have no say.
 pub type StandIn = Arc<dyn Fn(&[f64]) -> Result<World, AnyError> + Send + Sync>;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use hwasp_experiment::{Catalogue, Experiment};
 use hwasp_plot::{Band, Curve, IntervalRow, PlotOptions, XAxis, curve_panels, intervals, saved_plot_options};
 use hwasp_runs::text::{Shown, grouped};
-use hwasp_runs::{RunError, saved_provenance, saved_spec};
+use hwasp_runs::{RunError, saved_experiment, saved_provenance};
 use hwasp_study::{CellResult, Comparison, Figure, MethodFigures, Pair, SavedComparison};
-use hwasp_training::spec::Spec;
 use maud::{Markup, html};
 
 use crate::figure::{gallery, picture};
@@ -17,9 +17,9 @@ use crate::sections::provenance::{command, origin};
 use crate::words::{decimal, decimals, duration, interval, spaced};
 
 /// Reads a comparison and lays out its report.
-pub(super) fn page(folder: &Path) -> Result<Page, RunError> {
+pub(super) fn page(folder: &Path, catalogue: &Catalogue) -> Result<Page, RunError> {
     let saved = SavedComparison::open(folder)?;
-    let spec = saved_spec(&saved.first, &[])?;
+    let spec = saved_experiment(&saved.first, &[], catalogue)?;
     let typed = saved_provenance(&saved.first)?;
     let comparison = &saved.comparison;
     let origin = html! {
@@ -155,7 +155,7 @@ fn pairs(pairs: &[Pair]) -> Markup {
     }
 }
 
-fn compared(spec: &Spec, comparison: &Comparison) -> Markup {
+fn compared(spec: &Experiment, comparison: &Comparison) -> Markup {
     html! {
         p { (overview::problem(spec)) }
         p {

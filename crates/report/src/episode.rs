@@ -27,7 +27,7 @@ fn failed(error: &dyn std::error::Error) -> Markup {
 
 #[cfg(feature = "mujoco")]
 fn grasps(run: &Run) -> Result<Markup, RunError> {
-    let saved = SavedRun::open(&run.path)?;
+    let saved = SavedRun::open(&run.path, run.spec.catalogue())?;
     let drawn = crate::grasp::section(saved.assembly(), &saved.params()?);
     Ok(drawn.unwrap_or_else(|error| failed(&error)))
 }
@@ -45,7 +45,7 @@ fn grasps(_: &Run) -> Result<Markup, RunError> {
 
 /// What the controller sees and commands in the first held-out episode.
 fn moves(run: &Run) -> Result<Markup, RunError> {
-    let saved = SavedRun::open(&run.path)?;
+    let saved = SavedRun::open(&run.path, run.spec.catalogue())?;
     let params = saved.params()?;
     let batch = first_episode(saved.assembly(), &params, run.summary.evaluation.seed);
     Ok(match batch {
@@ -56,7 +56,7 @@ fn moves(run: &Run) -> Result<Markup, RunError> {
 
 fn curves(run: &Run, assembly: &Assembly, batch: &Batch) -> Markup {
     let seed = run.summary.evaluation.seed;
-    let environment = assembly.problem.deployment.make.make(None);
+    let environment = assembly.worlds.deployment.make.make(None);
     let (seen, given) = (&environment.spec().observation, &environment.spec().command);
     let controller = &run.spec.controller;
     let column = |values: &[f32], of: usize, i: usize| -> Vec<f64> {
@@ -93,6 +93,6 @@ fn curves(run: &Run, assembly: &Assembly, batch: &Batch) -> Markup {
 
 fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, EvaluateError> {
     let design = assembly.built(params);
-    let sampler = sampler(assembly, &assembly.problem.deployment, &design)?;
+    let sampler = sampler(assembly, &assembly.worlds.deployment, &design)?;
     Ok(sampler.collect(&Serial, assembly.policy.controller_params(params), &held_out(seed, 0..1))?)
 }

@@ -21,20 +21,20 @@ mod words;
 
 use std::path::Path;
 
+use hwasp_experiment::{Catalogue, EXPERIMENT};
 use hwasp_runs::RunError;
 use hwasp_study::COMPARISON;
-use hwasp_training::spec::EXPERIMENT;
 
 /// The report of a run folder, or of the folder of a comparison.
 ///
 /// # Errors
 /// Of folders that are neither, of runs that did not come to their end, of files that are missing or damaged.
-pub fn report(folder: &Path) -> Result<String, RunError> {
+pub fn report(folder: &Path, catalogue: &Catalogue) -> Result<String, RunError> {
     if folder.join(EXPERIMENT).is_file() {
-        return run_page::page(&run::Run::open(folder)?).map(page::Page::html);
+        return run_page::page(&run::Run::open(folder, catalogue)?).map(page::Page::html);
     }
     if folder.join(COMPARISON).is_file() {
-        return comparison::page(folder).map(page::Page::html);
+        return comparison::page(folder, catalogue).map(page::Page::html);
     }
     Err(RunError::Nothing { path: folder.to_owned() })
 }

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{
-    Provenance, RunError, SUMMARY, Summary, encode, saved_json, saved_metrics, saved_provenance, saved_spec,
+    Provenance, RunError, SUMMARY, Summary, encode, saved_experiment, saved_json, saved_metrics, saved_provenance,
     saved_summary,
 };
-use hwasp_training::spec::{EXPERIMENT, Spec};
 use hwasp_workshop::design::DesignReport;
 use hwasp_workshop::parts::{PARTS, PartsList};
 use hwasp_workshop::tolerances::{Sensitivities, TOLERANCES};
@@ -20,7 +20,7 @@ const BUILD: &str = "build";
 /// Everything that a run folder says.
 pub(super) struct Run {
     pub(super) path: PathBuf,
-    pub(super) spec: Spec,
+    pub(super) spec: Experiment,
     /// The experiment as a file, every setting resolved.
     pub(super) experiment: String,
     pub(super) summary: Summary,
@@ -33,8 +33,8 @@ pub(super) struct Run {
 
 impl Run {
     /// Reads a folder and checks that what it says fits together.
-    pub(super) fn open(path: &Path) -> Result<Self, RunError> {
-        let spec = saved_spec(path, &[])?;
+    pub(super) fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
+        let spec = saved_experiment(path, &[], catalogue)?;
         let summary = saved_summary(path)?;
         same_run(&spec, (&summary.experiment, &summary.method, &summary.task, summary.seed), &path.join(SUMMARY))?;
         let (parts, tolerances) = (path.join(BUILD).join(PARTS), path.join(BUILD).join(TOLERANCES));
@@ -42,7 +42,7 @@ impl Run {
             path: path.to_owned(),
             experiment: spec.to_toml().map_err(|e| encode(EXPERIMENT, &e))?,
             summary,
-            design: DesignReport::open(path)?,
+            design: DesignReport::open(path, catalogue)?,
             metrics: saved_metrics(path)?,
             provenance: saved_provenance(path)?,
             parts: saved_json(&parts)?,
@@ -70,7 +70,11 @@ impl Run {
 }
 
 /// Whether a file is about the run that it lies with.
-fn same_run(spec: &Spec, (name, method, task, seed): (&str, &str, &str, u64), file: &Path) -> Result<(), RunError> {
+fn same_run(
+    spec: &Experiment,
+    (name, method, task, seed): (&str, &str, &str, u64),
+    file: &Path,
+) -> Result<(), RunError> {
     let run = (spec.name.as_str(), spec.method.name(), spec.task.name(), spec.seed);
     if (name, method, task, seed) == run {
         return Ok(());

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hwasp_training::spec::{EXPERIMENT, SpecErrors};
+use hwasp_experiment::{EXPERIMENT, Faults};
 use hwasp_training::{AssembleError, TrainError};
 use thiserror::Error;
 
@@ -94,7 +94,7 @@ pub enum RunError {
     },
     /// The experiment in it.
     #[error(transparent)]
-    Spec(#[from] SpecErrors),
+    Experiment(#[from] Faults),
     /// The experiment in it, put together.
     #[error(transparent)]
     Assemble(#[from] AssembleError),

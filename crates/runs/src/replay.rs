@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hwasp_algos::Metrics;
 use hwasp_core::Executor;
-use hwasp_training::spec::EXPERIMENT;
+use hwasp_experiment::{Catalogue, EXPERIMENT};
 use hwasp_training::{Checkpoint, TrainError, repeat};
 use thiserror::Error;
 
@@ -52,21 +52,21 @@ pub struct Replay {
 }
 
 /// Repeats the iteration that follows a checkpoint: a file of a run folder's `faults`, or of its `checkpoints`.
-pub fn replay(path: &Path, executor: &dyn Executor) -> Result<Replay, ReplayError> {
+pub fn replay(path: &Path, catalogue: &Catalogue, executor: &dyn Executor) -> Result<Replay, ReplayError> {
     let file = path.canonicalize().ok().filter(|file| file.is_file());
     let run = file.and_then(|file| Some(file.parent()?.parent()?.to_owned()));
     let run = run.ok_or_else(|| ReplayError::Place { path: path.to_owned() })?;
-    let saved = SavedRun::open(&run).map_err(|error| match error {
+    let saved = SavedRun::open(&run, catalogue).map_err(|error| match error {
         RunError::NotARun { .. } => ReplayError::Place { path: path.to_owned() },
         other => other.into(),
     })?;
     let assembly = saved.assembly();
     let bytes = read_limited(path, LARGEST_CHECKPOINT)?;
     let checkpoint_error = |source| RunError::Checkpoint { path: path.to_owned(), source };
-    let experiment = assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+    let experiment = assembly.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
     let checkpoint = decode(&bytes, &experiment_hash(&experiment)).map_err(checkpoint_error)?;
     let fault = Header::read(&bytes).map_err(checkpoint_error)?.fault;
-    if assembly.spec().method.searches() {
+    if assembly.experiment().method.searches() {
         return Err(ReplayError::Search { path: path.to_owned() });
     }
     let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };

@@ -63,7 +63,7 @@ pub struct Summary {
 impl Summary {
     /// The figures of a training.
     pub fn new(assembly: &Assembly, trained: &Trained) -> Self {
-        let spec = assembly.spec();
+        let spec = assembly.experiment();
         Self {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
@@ -87,10 +87,10 @@ impl Summary {
 fn design_summary(assembly: &Assembly, params: &[f32]) -> BTreeMap<String, DesignGroupSummary> {
     let policy = &assembly.policy;
     let design = policy.design(params);
-    let built = assembly.problem.training.law.as_built(&design);
+    let built = assembly.worlds.training.law.as_built(&design);
     let mut at = 0;
     let mut groups = BTreeMap::new();
-    for (group, optimum) in policy.space().groups().iter().zip(&assembly.problem.optimum) {
+    for (group, optimum) in policy.space().groups().iter().zip(&assembly.worlds.optimum) {
         let range = at..at + group.count;
         at = range.end;
         let (values, as_built) = (design[range.clone()].to_vec(), built[range].to_vec());

@@ -11,17 +11,17 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use hwasp_core::Serial;
+use hwasp_experiment::Experiment;
 use hwasp_runs::files::{Disk, Files};
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun};
 use hwasp_testing::{Stopper, small};
-use hwasp_training::spec::Spec;
 use hwasp_training::{Assembly, TrainError, train, train_from};
 
 fn empty(name: &str) -> PathBuf {
     hwasp_testing::empty(env!("CARGO_TARGET_TMPDIR"), name)
 }
 
-fn provenance(spec: &Spec) -> Provenance {
+fn provenance(spec: &Experiment) -> Provenance {
     Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 

@@ -8,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use hwasp_core::{Dimension, Initial, Serial};
+use hwasp_experiment::{self, Experiment, Layers, OwnProblem, Setting};
 use hwasp_runs::{Keeping, Provenance, RunFolder, SavedRun, no_extras};
 use hwasp_tasks::reach::{Reach, ReachSettings};
-use hwasp_training::spec::{self, Layers, OwnProblem, Setting, Spec};
 use hwasp_training::{Assembly, Problems, train};
 
 const EXPERIMENT: &str = "name = \"mine\"\n[task]\nproblem = \"my-reach\"\ngoal = \"30 cm\"\n[train]\nenv_steps = 2400\n\
@@ -37,7 +37,7 @@ fn mine(name: &'static str, settings: [Setting; 1]) -> OwnProblem {
     })
 }
 
-fn resolve(text: &str) -> Result<Spec, String> {
+fn resolve(text: &str) -> Result<Experiment, String> {
     let layers = Layers::from_text("experiment.toml", text).map_err(|e| e.to_string())?;
     spec::resolve(layers, None).map_err(|e| e.to_string())
 }
@@ -48,7 +48,7 @@ fn settings_horizon_and_start_are_the_experiments() {
     spec::register([mine("my-reach", [goal()])]).unwrap();
     let usual = resolve(EXPERIMENT).unwrap();
     assert_eq!((usual.task.name(), usual.task.horizon), ("my-reach", 30));
-    let design = |spec: &Spec| {
+    let design = |spec: &Experiment| {
         let assembly = Assembly::new(spec).unwrap();
         assembly.policy.design(&assembly.init())[0]
     };

@@ -1,6 +1,5 @@
 //! The trained hands under `results/` open with this program and grasp.
 
-#![cfg(feature = "mujoco")]
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use std::path::Path;

@@ -9,17 +9,17 @@ use std::time::Duration;
 
 use hwasp_algos::Array;
 use hwasp_core::{End, EpisodeKind, Episodes, Sampler, Serial, Step};
+use hwasp_experiment::Experiment;
 use hwasp_runs::checkpoint::{decode, encode};
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun, no_extras, replay};
 use hwasp_testing::{KINDS, Keeper, Stopper, executor, run, small, spoil, told};
-use hwasp_training::spec::Spec;
 use hwasp_training::{Assembly, Event, Fault, Observer, TrainError, params_at, train, train_from};
 
 fn empty(name: &str) -> PathBuf {
     hwasp_testing::empty(env!("CARGO_TARGET_TMPDIR"), name)
 }
 
-fn provenance(spec: &Spec) -> Provenance {
+fn provenance(spec: &Experiment) -> Provenance {
     Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 
@@ -33,7 +33,7 @@ fn a_resumed_training_has_the_bits_of_one_that_was_never_interrupted() {
         let count = kept.checkpoints.len();
         assert!(count > 3, "{method} {settings:?}: {count} checkpoints");
         let within = kept.checkpoints.iter().filter(|c| c.archive.keys().any(|k| k.contains(".training."))).count();
-        assert_eq!(within > 0, assembly.spec().method.trains_inside(), "{method} {settings:?}");
+        assert_eq!(within > 0, assembly.experiment().method.trains_inside(), "{method} {settings:?}");
         // All of the first, then fewer: a test may not take minutes.
         for (i, checkpoint) in
             kept.checkpoints.iter().enumerate().filter(|(i, _)| *i < 4 || i % (count / 4).max(1) == 0)
@@ -130,7 +130,7 @@ fn a_run_folder_that_was_stopped_many_times_is_that_of_one_run() {
 }
 
 /// A run of four iterations that was stopped after two of them.
-fn stopped(name: &str) -> (PathBuf, Spec, Assembly) {
+fn stopped(name: &str) -> (PathBuf, Experiment, Assembly) {
     let spec = small("hwasp", &[]);
     let (path, assembly) = (empty(name), Assembly::new(&spec).unwrap());
     let mut folder = RunFolder::create(&path, &spec, &provenance(&spec), always()).unwrap();
@@ -154,7 +154,7 @@ fn an_unfinished_run_can_be_evaluated_at_its_newest_checkpoint() {
         assert_eq!(params.len(), assembly.init().len());
         let moved = params != assembly.init();
         // Whether the first candidate was scored by then is another matter.
-        assert!(moved || assembly.spec().method.searches(), "{method}");
+        assert!(moved || assembly.experiment().method.searches(), "{method}");
         assert!(matches!(SavedRun::open(&path).unwrap().summary(), Err(RunError::Unfinished { .. })));
     }
 }
@@ -233,7 +233,7 @@ fn an_iteration_that_failed_can_be_repeated_from_its_folder() {
     let kept = run(&assembly, None, 1).1;
     let checkpoint = &kept.checkpoints[2];
     let policy = assembly.policy.clone();
-    let sampler = Sampler::new(policy, assembly.problem.training.make.clone(), Some(spec.train.episode_steps));
+    let sampler = Sampler::new(policy, assembly.worlds.training.make.clone(), Some(spec.train.episode_steps));
     let progress = checkpoint.env_steps as f64 / spec.train.env_steps as f64;
     let episodes = Episodes { seed: spec.seed, iteration: 3, indices: 0..40, progress, kind: EpisodeKind::Training };
     let batch = sampler.collect(&Serial, &params_at(&assembly, checkpoint).unwrap(), &episodes).unwrap();

@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Executor, Serial, Threads};
+use hwasp_experiment::{self, Experiment};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{Keeping, Provenance, RunError, RunFolder, SavedRun, Summary, no_extras};
-use hwasp_training::spec::{self, Spec};
 use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, evaluate, train};
 
 const SETTINGS: &[(&str, &str)] = &[("train.env_steps", "2400"), ("train.evaluation_episodes", "20")];
 
-fn experiment(name: &str, method: Option<&str>, settings: &[(&str, &str)]) -> Spec {
+fn experiment(name: &str, method: Option<&str>, settings: &[(&str, &str)]) -> Experiment {
     let layers = spec::load(name).unwrap();
     let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
     spec::resolve(layers, method).unwrap()
@@ -27,11 +27,11 @@ fn empty(name: &str) -> PathBuf {
     path
 }
 
-fn provenance(spec: &Spec) -> Provenance {
+fn provenance(spec: &Experiment) -> Provenance {
     Provenance::new(vec!["hwasp".into(), "train".into(), "a \"name\"".into()], 1, spec.seed)
 }
 
-fn run_with(path: &Path, spec: &Spec, executor: &dyn Executor) -> Summary {
+fn run_with(path: &Path, spec: &Experiment, executor: &dyn Executor) -> Summary {
     let assembly = Assembly::new(spec).unwrap();
     let mut folder = RunFolder::create(path, spec, &provenance(spec), Keeping::default()).unwrap();
     assert_eq!(folder.path(), path);
@@ -39,7 +39,7 @@ fn run_with(path: &Path, spec: &Spec, executor: &dyn Executor) -> Summary {
     folder.finish(&assembly, &trained, &no_extras).unwrap()
 }
 
-fn run(path: &Path, spec: &Spec) -> Summary {
+fn run(path: &Path, spec: &Experiment) -> Summary {
     run_with(path, spec, &Serial)
 }
 
@@ -151,7 +151,7 @@ fn the_experiment_in_the_folder_repeats_the_run_bit_by_bit() {
     }
 }
 
-fn one_iteration(mut spec: Spec) -> Spec {
+fn one_iteration(mut spec: Experiment) -> Experiment {
     spec.train.env_steps = spec.train.rows() as u64;
     spec
 }
@@ -175,7 +175,7 @@ fn a_saved_run_evaluates_to_what_its_summary_says() {
         let spec = experiment(name, Some(method), &[("train.env_steps", "4000"), ("train.evaluation_episodes", "20")]);
         let summary = run(&path, &spec);
         let saved = SavedRun::open(&path).unwrap();
-        let settings = &saved.assembly().spec().train;
+        let settings = &saved.assembly().experiment().train;
         let asked = (settings.evaluation_episodes as u64, settings.evaluation_seed);
         let evaluation = evaluate(saved.assembly(), &saved.params().unwrap(), asked, &Serial).unwrap();
         assert_eq!(evaluation, summary.evaluation, "{name}");

@@ -26,7 +26,6 @@ pub trait Choice: Copy + PartialEq + 'static {
 ///         Palm = "palm",
 ///     }
 /// }
-/// use hwasp_settings::Choice;
 /// assert_eq!(Viewpoint::from_name("palm").map(Viewpoint::name), Some("palm"));
 /// ```
 #[macro_export]
@@ -38,17 +37,32 @@ macro_rules! choice {
             $($(#[$doc])* $variant),+
         }
 
+        impl $enum {
+            /// Every one, with its name in files.
+            pub const ALL: &'static [(&'static str, Self)] = &[$(($name, Self::$variant)),+];
+
+            /// Its name in files.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),+ }
+            }
+
+            /// The one of this name.
+            pub fn from_name(name: &str) -> Option<Self> {
+                <Self as $crate::Choice>::from_name(name)
+            }
+        }
+
         impl $crate::Choice for $enum {
-            const ALL: &'static [(&'static str, Self)] = &[$(($name, Self::$variant)),+];
+            const ALL: &'static [(&'static str, Self)] = Self::ALL;
 
             fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),+ }
+                self.name()
             }
         }
 
         impl ::std::fmt::Display for $enum {
             fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
-                f.write_str($crate::Choice::name(*self))
+                f.write_str(self.name())
             }
         }
     };

@@ -91,13 +91,7 @@ impl<'f, 'r> Fields<'f, 'r> {
     }
 
     /// A real number or "none".
-    pub fn optional_number(
-        &mut self,
-        key: &str,
-        value: &mut Option<f64>,
-        limits: RangeInclusive<f64>,
-        meaning: &str,
-    ) {
+    pub fn optional_number(&mut self, key: &str, value: &mut Option<f64>, limits: RangeInclusive<f64>, meaning: &str) {
         let kind = || Kind::Optional(Box::new(Kind::Number(ends(&limits))));
         let item = value.map_or(Item::from("none"), Item::Float);
         self.field(key, meaning, kind, &shown(&item), item.clone(), |section| {
@@ -124,9 +118,16 @@ impl<'f, 'r> Fields<'f, 'r> {
     /// True or false.
     pub fn flag(&mut self, key: &str, value: &mut bool, meaning: &str) {
         let exchanged = *value;
-        self.field(key, meaning, || Kind::Flag, &exchanged.to_string(), Item::Flag(exchanged), |section| {
-            *value = section.flag(key, exchanged);
-        });
+        self.field(
+            key,
+            meaning,
+            || Kind::Flag,
+            &exchanged.to_string(),
+            Item::Flag(exchanged),
+            |section| {
+                *value = section.flag(key, exchanged);
+            },
+        );
     }
 
     /// One line of text.
@@ -141,11 +142,18 @@ impl<'f, 'r> Fields<'f, 'r> {
 
     fn text_of(&mut self, key: &str, value: &mut String, (most, lines): (usize, bool), meaning: &str) {
         let item = Item::Text(value.clone());
-        self.field(key, meaning, || Kind::Text(most), &shown(&item), item.clone(), |section| {
-            if let Some(text) = section.text(key, most, lines) {
-                *value = text;
-            }
-        });
+        self.field(
+            key,
+            meaning,
+            || Kind::Text(most),
+            &shown(&item),
+            item.clone(),
+            |section| {
+                if let Some(text) = section.text(key, most, lines) {
+                    *value = text;
+                }
+            },
+        );
     }
 
     /// The path of a file, as it is written: relative to whatever the owner of the setting says.
@@ -166,8 +174,7 @@ impl<'f, 'r> Fields<'f, 'r> {
 
     /// A list of names, from 1 to `most` of them.
     pub fn choices<T: Choice>(&mut self, key: &str, value: &mut Vec<T>, most: usize, meaning: &str) {
-        let kind =
-            || Kind::List { of: Box::new(Kind::Choice(names::<T>())), length: [1, most], single: false };
+        let kind = || Kind::List { of: Box::new(Kind::Choice(names::<T>())), length: [1, most], single: false };
         let item = Item::List(value.iter().map(|choice| Item::from(choice.name())).collect());
         self.field(key, meaning, kind, &shown(&item), item.clone(), |section| {
             if let Some(chosen) = section.choices(key, T::ALL, most) {
@@ -263,11 +270,7 @@ impl<'f, 'r> Fields<'f, 'r> {
 
     /// Real numbers, as many as there are.
     pub fn numbers(&mut self, key: &str, value: &mut Vec<f64>, limits: RangeInclusive<f64>, meaning: &str) {
-        let kind = || Kind::List {
-            of: Box::new(Kind::Number(ends(&limits))),
-            length: [0, usize::MAX],
-            single: false,
-        };
+        let kind = || Kind::List { of: Box::new(Kind::Number(ends(&limits))), length: [0, usize::MAX], single: false };
         let item = Item::List(value.iter().map(|&number| Item::Float(number)).collect());
         self.field(key, meaning, kind, &shown(&item), item.clone(), |section| {
             *value = section.numbers(key, value, &limits);
@@ -304,18 +307,18 @@ impl<'f, 'r> Fields<'f, 'r> {
     }
 
     /// A value of a form of its own. `read` is given the value where there is one; an `item` of none is not written.
-    pub fn open(
-        &mut self,
-        key: &str,
-        meaning: &str,
-        item: Option<Item>,
-        read: impl FnOnce(&Section<'r>, &'r Node),
-    ) {
-        self.optional_field(key, meaning, || Kind::Open, item, |section| {
-            if let Some(node) = section.take(key) {
-                read(section, node);
-            }
-        });
+    pub fn open(&mut self, key: &str, meaning: &str, item: Option<Item>, read: impl FnOnce(&Section<'r>, &'r Node)) {
+        self.optional_field(
+            key,
+            meaning,
+            || Kind::Open,
+            item,
+            |section| {
+                if let Some(node) = section.take(key) {
+                    read(section, node);
+                }
+            },
+        );
     }
 
     /// Holds values against each other while they are read: unless `holds`, the fault is told at the key. To be asked only

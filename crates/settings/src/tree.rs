@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-
 use crate::source::Origin;
 use crate::text::{shorten, show};
 

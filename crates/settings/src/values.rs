@@ -109,13 +109,7 @@ impl Section<'_> {
     }
 
     /// A quantity such as `"3 N"`; the default, the range and the result are in SI.
-    pub fn quantity(
-        &mut self,
-        key: &str,
-        dimension: Dimension,
-        default: f64,
-        range: &RangeInclusive<f64>,
-    ) -> f64 {
+    pub fn quantity(&mut self, key: &str, dimension: Dimension, default: f64, range: &RangeInclusive<f64>) -> f64 {
         let Some(node) = self.take(key) else { return default };
         self.checked_quantity(key, node, dimension, default, range).unwrap_or(default)
     }
@@ -242,13 +236,7 @@ impl Section<'_> {
     }
 
     /// Sizes of layers.
-    pub fn counts(
-        &mut self,
-        key: &str,
-        default: &[usize],
-        most: usize,
-        range: &RangeInclusive<usize>,
-    ) -> Vec<usize> {
+    pub fn counts(&mut self, key: &str, default: &[usize], most: usize, range: &RangeInclusive<usize>) -> Vec<usize> {
         let Some(node) = self.take(key) else { return default.to_vec() };
         let hint = || Some(format!("the default is {default:?}"));
         match &node.value {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Serial;
+use hwasp_experiment::EXPERIMENT;
 use hwasp_plot::{PlotOptions, curves_svg, plot_options};
 use hwasp_runs::metrics::MetricsTable;
-use hwasp_runs::{Keeping, Provenance, Resumed, RunFolder, SUMMARY, SavedRun, Summary, saved_spec};
-use hwasp_training::spec::EXPERIMENT;
+use hwasp_runs::{Keeping, Provenance, Resumed, RunFolder, SUMMARY, SavedRun, Summary, saved_experiment};
 use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, train_from};
 
 use crate::error::CompareError;
@@ -54,7 +54,7 @@ impl Cell {
         if !self.is_begun() {
             return Ok(false);
         }
-        if saved_spec(&self.path, &[])? != *self.assembly.spec() {
+        if saved_experiment(&self.path, &[], self.assembly.experiment().catalogue())? != *self.assembly.experiment() {
             return Err(CompareError::Other { path: self.path.clone() });
         }
         Ok(self.path.join(SUMMARY).is_file())
@@ -66,7 +66,7 @@ impl Cell {
     }
 
     pub(crate) fn result(&self) -> Result<CellResult, CompareError> {
-        let saved = SavedRun::open(&self.path)?;
+        let saved = SavedRun::open(&self.path, self.assembly.experiment().catalogue())?;
         Ok(CellResult { label: self.label.clone(), summary: saved.summary()?, metrics: saved.metrics()? })
     }
 
@@ -77,7 +77,7 @@ impl Cell {
         watch: &dyn Watch,
         stop: &AtomicBool,
     ) -> Result<Option<CellResult>, CompareError> {
-        let spec = self.assembly.spec();
+        let spec = self.assembly.experiment();
         let (provenance, keeping) = (Provenance::new(command_line.to_vec(), 1, self.seed), Keeping::default());
         let Resumed { mut folder, found } = if self.is_begun() {
             RunFolder::resume(&self.path, spec, provenance, keeping)?
@@ -110,7 +110,7 @@ impl Cell {
 
     /// The experiment's name.
     pub fn experiment(&self) -> String {
-        self.assembly.spec().name.clone()
+        self.assembly.experiment().name.clone()
     }
 
     /// Axis texts, units and known optima for pictures of such runs.

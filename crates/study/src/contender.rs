@@ -1,6 +1,6 @@
 //! Who takes part in a comparison.
 
-use hwasp_training::spec::{Layers, Method};
+use hwasp_experiment::{Layers, Method};
 
 use crate::error::CompareError;
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use hwasp_experiment::Faults;
 use hwasp_plot::PlotError;
 use hwasp_runs::RunError;
 use hwasp_training::AssembleError;
-use hwasp_training::spec::SpecErrors;
 use hwasp_training::stats::StatsError;
 use thiserror::Error;
 
@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum CompareError {
     /// The experiment, for one of the methods.
     #[error(transparent)]
-    Spec(#[from] SpecErrors),
+    Experiment(#[from] Faults),
     /// The experiment, put together for one of the methods.
     #[error("{label}: {source}")]
     Assemble {

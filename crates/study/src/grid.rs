@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::Executor;
+use hwasp_experiment::{Catalogue, Layers, resolve};
 use hwasp_training::Assembly;
-use hwasp_training::spec::{Layers, resolve};
 
 use crate::cell::{CELLS, Cell, CellResult, Watch};
 use crate::contender::Contender;
@@ -27,7 +27,7 @@ impl Grid {
     ///
     /// # Errors
     /// [`CompareError::Taken`] where `folder` holds something else, so that nothing is overwritten.
-    pub fn cells(&self, folder: &Path) -> Result<Vec<Cell>, CompareError> {
+    pub fn cells(&self, folder: &Path, catalogue: &Catalogue) -> Result<Vec<Cell>, CompareError> {
         let is_empty = |mut entries: std::fs::ReadDir| entries.next().is_none();
         if folder.exists() && !folder.join(CELLS).is_dir() && !folder.read_dir().is_ok_and(is_empty) {
             return Err(CompareError::Taken { path: folder.to_owned() });
@@ -39,7 +39,7 @@ impl Grid {
             }
             for seed in self.seeds.clone() {
                 let layers = contender.apply(self.layers.clone()).with_override("seed", &seed.to_string());
-                let spec = resolve(layers, Some(contender.method.name()))?;
+                let spec = resolve(layers, Some(contender.method.name()), catalogue)?;
                 let assembly = Assembly::new(&spec)
                     .map_err(|source| CompareError::Assemble { label: contender.label.clone(), source })?;
                 let name = format!("{}-seed{seed}", contender.folder_name());
@@ -62,7 +62,7 @@ pub fn run(
 ) -> Result<Vec<CellResult>, CompareError> {
     let finished = cells.iter().map(Cell::is_finished).collect::<Result<Vec<_>, _>>()?;
     let known = cells.iter().zip(&finished).map(|(cell, &finished)| {
-        (format!("{} seed {}", cell.label, cell.seed), cell.assembly.spec().train.env_steps, finished)
+        (format!("{} seed {}", cell.label, cell.seed), cell.assembly.experiment().train.env_steps, finished)
     });
     watch.grid(&known.collect::<Vec<_>>());
     let results = executor.map(cells.len(), |i| {

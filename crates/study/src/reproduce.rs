@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hwasp_training::spec;
+use hwasp_experiment::{Catalogue, load};
 use hwasp_training::stats::Sample;
 
 use crate::cell::CellResult;
@@ -117,7 +117,7 @@ impl PaperFigure {
 
     /// The comparison behind one of its experiments: five seeds at the steps that the paper charged, in real ones; `quick`
     /// is two seeds at a fifth of them.
-    pub fn grid(&self, experiment: &str, quick: bool) -> Result<Grid, CompareError> {
+    pub fn grid(&self, experiment: &str, quick: bool, catalogue: &Catalogue) -> Result<Grid, CompareError> {
         let contenders = self.methods.iter().map(|method| {
             // The paper's curves end at 4e6 nominal steps, which are 8e6 real ones for PPO; searches have theirs in the file.
             let contender = Contender::parse(method)?;
@@ -133,7 +133,7 @@ impl PaperFigure {
             })
         });
         let contenders = contenders.collect::<Result<_, CompareError>>()?;
-        Ok(Grid { layers: spec::load(experiment)?, contenders, seeds: 0..if quick { 2 } else { 5 } })
+        Ok(Grid { layers: load(experiment, catalogue)?, contenders, seeds: 0..if quick { 2 } else { 5 } })
     }
 
     /// What was published beside what came out, as Markdown; empty where nothing is known.

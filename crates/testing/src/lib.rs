@@ -5,11 +5,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use hwasp_core::{EnvSpec, Environment, Executor, Serial, Step, Stream, Threads};
-use hwasp_training::spec::{self, Spec};
+use hwasp_experiment::{Catalogue, Experiment, Faults, Layers, load};
 use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, Trained, train_from};
 
 /// Keys and values.
@@ -30,14 +30,30 @@ pub const KINDS: [(&str, Settings); 9] = [
     ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
 ];
 
+/// The problems and learners that come with the program.
+pub fn catalogue() -> &'static Catalogue {
+    static CATALOGUE: LazyLock<Catalogue> = LazyLock::new(hwasp_builtin::catalogue);
+    &CATALOGUE
+}
+
+/// An experiment that comes with them, or a file.
+pub fn layers(name_or_path: &str) -> Layers {
+    load(name_or_path, catalogue()).unwrap()
+}
+
+/// Layers resolved with them.
+pub fn resolve(layers: Layers, method: Option<&str>) -> Result<Experiment, Faults> {
+    hwasp_experiment::resolve(layers, method, catalogue())
+}
+
 /// A training on the reach problem: 40 episodes of 30 steps an iteration.
-pub fn small(method: &str, settings: Settings) -> Spec {
+pub fn small(method: &str, settings: Settings) -> Experiment {
     let few = [("train.env_steps", "9600"), ("train.evaluation_episodes", "4"), ("search.inner_env_steps", "2400")];
     let steps = if matches!(method, "cmaes" | "ars") { "40000" } else { few[0].1 };
-    let layers = few.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = few.iter().fold(layers("reach"), |layers, (k, v)| layers.with_override(k, v));
     let layers = layers.with_override("train.env_steps", steps);
     let layers = settings.iter().fold(layers, |layers, (k, v)| layers.with_override(k, v));
-    spec::resolve(layers, Some(method)).unwrap()
+    resolve(layers, Some(method)).unwrap()
 }
 
 /// A path in `root` where nothing is: a test gives its `env!("CARGO_TARGET_TMPDIR")`.
@@ -115,11 +131,11 @@ impl Observer for Stopper<'_> {
 
 /// Lets `how` change what the environments of an assembly answer to an effort.
 pub fn spoil(assembly: &mut Assembly, how: impl Fn(&[f64], Step) -> Step + Send + Sync + 'static) {
-    let (how, whole): (Arc<How>, _) = (Arc::new(how), assembly.problem.training.make.clone());
-    assembly.problem.training.make = Arc::new(move |horizon| {
+    let (how, whole): (Arc<How>, _) = (Arc::new(how), assembly.worlds.training.make.clone());
+    assembly.worlds.training.make = Arc::new(move |horizon| {
         Box::new(Spoiled { inner: whole.make(horizon), how: how.clone() }) as Box<dyn Environment>
     });
-    assembly.problem.deployment = assembly.problem.training.clone();
+    assembly.worlds.deployment = assembly.worlds.training.clone();
 }
 
 type How = dyn Fn(&[f64], Step) -> Step + Send + Sync;

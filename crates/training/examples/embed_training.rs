@@ -39,12 +39,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stop = AtomicBool::new(false);
     let trained = train(&assembly, &Serial, &mut Listener, &stop)?;
     let gear = assembly.policy.design(&trained.params)[0];
-    println!("gear {gear:.3}, best known {:?}", assembly.problem.optimum[0]);
+    println!("gear {gear:.3}, best known {:?}", assembly.worlds.optimum[0]);
 
     // The controller on the hardware as built, in a loop of one's own.
-    let built = assembly.problem.training.law.as_built(&[gear]);
+    let built = assembly.worlds.training.law.as_built(&[gear]);
     let policy = assembly.deployed(&built)?;
-    let world = &assembly.problem.deployment;
+    let world = &assembly.worlds.deployment;
     let mut env = world.make.make(None);
     env.reset(&mut stream(1, Purpose::EvaluationReset, 0, 0));
     let mut actor = Actor::new(&policy, assembly.policy.controller_params(&trained.params), 1.0, 1);

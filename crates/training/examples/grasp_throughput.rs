@@ -24,7 +24,7 @@ struct Timed {
 
 impl Environment for Timed {
     fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
+        self.inner.experiment()
     }
 
     fn set_progress(&mut self, progress: f64) {
@@ -70,17 +70,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings = [("train.env_steps", (20_000 * iterations).to_string())];
     let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
     let mut assembly = Assembly::new(&spec::resolve(layers, None)?)?;
-    let (whole, nanoseconds) = (Arc::clone(&assembly.problem.training.make), Arc::new(AtomicU64::new(0)));
+    let (whole, nanoseconds) = (Arc::clone(&assembly.worlds.training.make), Arc::new(AtomicU64::new(0)));
     let counted = Arc::clone(&nanoseconds);
-    assembly.problem.training.make = Arc::new(move |horizon| {
+    assembly.worlds.training.make = Arc::new(move |horizon| {
         Box::new(Timed { inner: whole.make(horizon), nanoseconds: Arc::clone(&counted) }) as Box<dyn Environment>
     });
 
     let executor = Threads::new(threads as usize)?;
-    let train = &assembly.spec().train;
+    let train = &assembly.experiment().train;
     let sampler = Sampler::new(
         Arc::clone(&assembly.policy),
-        Arc::clone(&assembly.problem.training.make),
+        Arc::clone(&assembly.worlds.training.make),
         Some(train.episode_steps),
     );
     let mut learner = assembly.learner(assembly.init());

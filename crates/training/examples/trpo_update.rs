@@ -26,7 +26,7 @@ fn write(folder: &Path, assembly: &Assembly, batch: &Batch) -> Result<(), Box<dy
         "controller": policy.controller().sizes(),
         "groups": groups.collect::<std::collections::BTreeMap<_, _>>(),
         "design_limits": (0..policy.space().len()).map(|i| limits(policy.space().bounds(i))).collect::<Vec<_>>(),
-        "command_limits": assembly.problem.training.make.make(None).spec().command.iter().map(|c| [c.lo, c.hi]).collect::<Vec<_>>(),
+        "command_limits": assembly.worlds.training.make.make(None).spec().command.iter().map(|c| [c.lo, c.hi]).collect::<Vec<_>>(),
         "tendon_stiffness": transmission.tendon_stiffness,
         "tension_limit": transmission.tension_limit,
         "spool_radius": transmission.spool_radius,
@@ -62,10 +62,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let assembly = Assembly::new(&spec::resolve(layers, None)?)?;
 
     let executor = Threads::new(threads)?;
-    let train = &assembly.spec().train;
+    let train = &assembly.experiment().train;
     let sampler = Sampler::new(
         Arc::clone(&assembly.policy),
-        Arc::clone(&assembly.problem.training.make),
+        Arc::clone(&assembly.worlds.training.make),
         Some(train.episode_steps),
     );
     let indices = 0..train.episodes_per_iteration as u64;

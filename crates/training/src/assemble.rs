@@ -1,29 +1,19 @@
 //! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
 
 mod budget;
-mod learner;
-mod problem;
 
 use std::sync::Arc;
 
-use hwasp_algos::{Learner, Ppo, Trpo};
+use hwasp_algos::{Learner, LearnerSetup};
 use hwasp_core::{
-    Anneal, DesignError, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose,
-    Spread, stream,
+    Anneal, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
-use hwasp_tasks::hand::HandError;
-use hwasp_tasks::mass_spring::MassSpringError;
-use hwasp_tasks::pendulum::PendulumError;
-use hwasp_tasks::reach::ReachError;
+use hwasp_experiment::{ActivationKind, Experiment, Method, Place};
+use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
-pub(crate) use self::budget::{FINAL_EPISODES, popsize};
-pub use self::learner::LearnerSettings;
-pub use self::problem::law;
-use self::problem::problem;
-use crate::spec::{ActivationKind, Method, Place, Spec};
-use crate::worlds::{Problems, World};
+pub(crate) use self::budget::FINAL_EPISODES;
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;
@@ -31,47 +21,20 @@ const MOST_CORRELATED: usize = 5000;
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
 pub enum AssembleError {
-    /// The mass-spring problem's settings.
-    #[error(transparent)]
-    MassSpring(#[from] MassSpringError),
-    /// The reach problem's settings.
-    #[error(transparent)]
-    Reach(#[from] ReachError),
-    /// The pendulum's settings.
-    #[error(transparent)]
-    Pendulum(#[from] PendulumError),
-    /// The grasping task's settings.
-    #[cfg(feature = "mujoco")]
-    #[error(transparent)]
-    Grasp(#[from] hwasp_mujoco::grasp::GraspError),
-    /// The hand's mechanism.
-    #[error(transparent)]
-    Hand(#[from] HandError),
-    /// A problem whose physics are not in this program.
-    #[error(
-        "{problem} needs the MuJoCo engine, and this program was built without it: build it with the feature \"mujoco\""
-    )]
-    NoEngine {
-        /// The problem.
-        problem: &'static str,
-    },
+    /// Physics that cannot be set up: an engine that is missing, a model that it refuses.
+    #[error("{0}")]
+    Physics(String),
     /// Where the design begins.
     #[error(transparent)]
-    Design(#[from] DesignError),
+    Design(AnyError),
     /// The placement of the design.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// A problem whose mechanism the engine cannot express by itself.
+    /// A problem without a world that stands in for the built robot.
     #[error("{problem} has no mechanism of the engine's own; z-grasp and 3d-grasp have")]
     NoNative {
         /// The problem.
-        problem: &'static str,
-    },
-    /// A problem in which nothing is grasped.
-    #[error("{problem} has no grasps to look at; z-grasp and 3d-grasp have")]
-    NoGrasp {
-        /// The problem.
-        problem: &'static str,
+        problem: String,
     },
     /// A search whose budget does not hold one generation.
     #[error(
@@ -105,28 +68,53 @@ pub enum AssembleError {
     },
 }
 
+/// Where one trains and where the result has to work, and what is known of the best design.
+#[derive(Clone, Debug)]
+pub struct Worlds {
+    /// Where one trains.
+    pub training: World,
+    /// Where the result has to work: the mechanism as built, without aids to training.
+    pub deployment: World,
+    /// The total of each design group that is best as built, where it is known, SI.
+    pub optimum: Vec<Option<f64>>,
+}
+
+impl Worlds {
+    /// Those of an experiment, with its horizon and its start, and their physics set up.
+    fn new(experiment: &Experiment) -> Result<Self, AssembleError> {
+        let (task, built) = (&experiment.task, experiment.task.built());
+        let starts = experiment.design.initial.starts(&task.groups(), experiment.design.logit_half_width);
+        let world = |world: &World| -> Result<World, AssembleError> {
+            world.ready().map_err(AssembleError::Physics)?;
+            let world = world.clone().with_horizon(task.horizon);
+            match &starts {
+                Some(starts) => world.beginning(starts).map_err(AssembleError::Design),
+                None => Ok(world),
+            }
+        };
+        let (training, deployment) = (world(&built.training)?, world(&built.deployment)?);
+        Ok(Self { training, deployment, optimum: built.optimum.clone() })
+    }
+}
+
 /// An experiment, ready to run.
 #[derive(Clone)]
 pub struct Assembly {
-    /// The problem.
-    pub problem: Problems,
+    /// The problem's worlds.
+    pub worlds: Worlds,
     /// Controller and hardware composed.
     pub policy: Arc<HardwarePolicy>,
-    /// Settings of the learner.
-    pub learner: LearnerSettings,
-    spec: Spec,
+    experiment: Experiment,
 }
 
 impl Assembly {
     /// Puts an experiment together.
-    pub fn new(spec: &Spec) -> Result<Self, AssembleError> {
-        let problem = problem(spec)?;
-        let policy =
-            HardwarePolicy::new(policy_spec(spec, &problem.training.law), problem.training.make.make(None).spec())?;
-        let assembly =
-            Self { problem, policy: Arc::new(policy), learner: LearnerSettings::new(spec), spec: spec.clone() };
+    pub fn new(experiment: &Experiment) -> Result<Self, AssembleError> {
+        let worlds = Worlds::new(experiment)?;
+        let policy = HardwarePolicy::new(policy_spec(experiment, &worlds.training.law), &worlds.training.env)?;
+        let assembly = Self { worlds, policy: Arc::new(policy), experiment: experiment.clone() };
         let parameters = assembly.policy.param_count();
-        if spec.method == Method::Cmaes && !spec.cmaes.separable && parameters > MOST_CORRELATED {
+        if experiment.method == Method::Cmaes && !experiment.cmaes.separable && parameters > MOST_CORRELATED {
             return Err(AssembleError::Covariance { parameters });
         }
         assembly.check_budget()?;
@@ -135,20 +123,20 @@ impl Assembly {
 
     /// The same experiment with the design fixed and only a controller to train, by its gradient.
     pub(crate) fn frozen(&self, design: &[f64], seed: u64, env_steps: u64) -> Result<Self, AssembleError> {
-        let mut spec = self.spec.clone();
-        (spec.method, spec.seed, spec.train.env_steps) = (Method::Fixed, seed, env_steps);
-        let policy = self.fixed_in(&self.problem.training, design, spec.noise.train)?;
-        Ok(Self { policy: Arc::new(policy), spec, ..self.clone() })
+        let mut experiment = self.experiment.clone();
+        (experiment.method, experiment.seed, experiment.train.env_steps) = (Method::Fixed, seed, env_steps);
+        let policy = self.fixed_in(&self.worlds.training, design, experiment.noise.train)?;
+        Ok(Self { policy: Arc::new(policy), experiment, ..self.clone() })
     }
 
     /// The experiment it was made of.
-    pub fn spec(&self) -> &Spec {
-        &self.spec
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
     }
 
     /// The design in `params` as it is to be built, SI.
     pub fn built(&self, params: &[f32]) -> Vec<f64> {
-        self.problem.training.law.as_built(&self.policy.design(params))
+        self.worlds.training.law.as_built(&self.policy.design(params))
     }
 
     /// What the totals of the design groups are called in tables and plots: `stiffness_total`, or `gear` for a group of
@@ -160,21 +148,25 @@ impl Assembly {
 
     /// Fresh parameters.
     pub fn init(&self) -> Vec<f32> {
-        self.policy.init(self.spec.seed, self.spec.controller.output_gain)
+        self.policy.init(self.experiment.seed, self.experiment.controller.output_gain)
     }
 
     /// A learner that starts from `params`.
     pub fn learner(&self, params: Vec<f32>) -> Box<dyn Learner> {
-        let (policy, seed) = (Arc::clone(&self.policy), self.spec.seed);
-        match &self.learner {
-            LearnerSettings::Ppo(settings) => Box::new(Ppo::new(settings, policy, params, seed)),
-            LearnerSettings::Trpo(settings) => Box::new(Trpo::new(settings, policy, params, seed)),
-        }
+        let experiment = &self.experiment;
+        experiment.learner.learner(LearnerSetup {
+            policy: Arc::clone(&self.policy),
+            params,
+            seed: experiment.seed,
+            baseline: experiment.baseline.config(),
+            design_lr_scale: experiment.design.learning_rate_scale,
+            log_std_lr_scale: experiment.noise.learning_rate_scale,
+        })
     }
 
     /// The trained controller on the built hardware: every design parameter fixed to `built`, in the world it is for.
     pub fn deployed(&self, built: &[f64]) -> Result<HardwarePolicy, AssembleError> {
-        self.fixed_in(&self.problem.deployment, built, false)
+        self.fixed_in(&self.worlds.deployment, built, false)
     }
 
     /// The trained controller on hardware fixed to `design`, in any world of this problem. `train_noise`: whether its
@@ -184,7 +176,18 @@ impl Assembly {
         spec.law = world.law.clone();
         spec.placements = design.iter().map(|&value| Placement::Fixed(value)).collect();
         spec.noise.train = train_noise;
-        Ok(HardwarePolicy::new(spec, world.make.make(None).spec())?)
+        Ok(HardwarePolicy::new(spec, &world.env)?)
+    }
+
+    /// The world that stands in for the robot built to this `design` (SI): the hand with the engine's own tendons and springs, at
+    /// the rate of the simulation, in which the law has no say.
+    pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
+        let task = &self.experiment.task;
+        let none = || AssembleError::NoNative { problem: task.name().to_owned() };
+        let stand_in = task.built().stand_in.as_ref().ok_or_else(none)?;
+        let world = stand_in(design).map_err(|error| AssembleError::Physics(error.to_string()))?;
+        world.ready().map_err(AssembleError::Physics)?;
+        Ok(world.with_horizon(task.horizon))
     }
 }
 
@@ -193,7 +196,7 @@ pub fn total_name(group: &str, count: usize) -> String {
     if count == 1 { group.to_owned() } else { format!("{group}_total") }
 }
 
-fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
+fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
     // A fixed parameter keeps the value that a free one would have begun with; a given one to the last bit, which the
     // way through the squash and back would not.
     let space = law.design();
@@ -216,7 +219,7 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
         anneal: last.map(|last| Anneal { ratio: last / first, from, to }),
     };
     let finals = noise.command_final.as_ref();
-    let commands = noise.command.0.iter().enumerate();
+    let commands = noise.command.iter().enumerate();
     PolicySpec {
         hidden: spec.controller.hidden.clone(),
         activation: match spec.controller.activation {
@@ -229,11 +232,8 @@ fn policy_spec(spec: &Spec, law: &Law) -> PolicySpec {
         law: law.clone(),
         placements: placements.collect(),
         noise: Noise {
-            command: commands.map(|(i, &first)| spread(first, finals.map(|last| last.0[i]))).collect(),
-            effort: spread(
-                noise.effort.map_or(1.0, |effort| effort.value),
-                noise.effort_final.map(|effort| effort.value),
-            ),
+            command: commands.map(|(i, &first)| spread(first, finals.map(|last| last[i]))).collect(),
+            effort: spread(noise.effort.unwrap_or(1.0), noise.effort_final),
             design: spread(noise.design, noise.design_final),
             // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
             train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),

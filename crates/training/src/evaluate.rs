@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::assemble::{AssembleError, Assembly};
 use crate::stats::{Interval, Sample, StatsError, bootstrap_interval, wilson};
-use crate::worlds::World;
+use hwasp_problem::World;
 
 /// Why there is no evaluation.
 #[derive(Debug, Error)]
@@ -116,8 +116,8 @@ pub fn evaluate(
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
     let design = assembly.policy.design(params);
-    let built = assembly.problem.training.law.as_built(&design);
-    evaluate_in(assembly, &assembly.problem.deployment, &built, params, (episodes, seed), executor)
+    let built = assembly.worlds.training.law.as_built(&design);
+    evaluate_in(assembly, &assembly.worlds.deployment, &built, params, (episodes, seed), executor)
 }
 
 /// Evaluates the controller in `params` on the design in them in the world that stands in for the built robot: the hand with
@@ -156,7 +156,7 @@ pub(crate) fn rollouts(
 ) -> Result<Vec<Result<EpisodeResult, RolloutError>>, EvaluateError> {
     let sampler = sampler(assembly, world, design)?;
     let controller = assembly.policy.controller_params(params);
-    Ok(sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), assembly.spec().discount())?)
+    Ok(sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), assembly.experiment().discount())?)
 }
 
 impl Evaluation {

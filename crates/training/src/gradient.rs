@@ -29,7 +29,7 @@ impl Persist for Gradient<'_> {
 
 /// Follows the policy's gradient, from the beginning or from where a training was interrupted.
 pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
-    let budget = assembly.spec().train.env_steps;
+    let budget = assembly.experiment().train.env_steps;
     let mut state = Gradient::new(assembly, from)?;
     run.clock = Clock::start(state.learned.wall_s);
     while state.learned.env_steps < budget {
@@ -60,9 +60,8 @@ impl<'a> Gradient<'a> {
 
     /// From the beginning, with these parameters.
     pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
-        let episode_steps = assembly.spec().train.episode_steps;
-        let sampler =
-            Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(episode_steps));
+        let episode_steps = assembly.experiment().train.episode_steps;
+        let sampler = Sampler::new(assembly.policy.clone(), assembly.worlds.training.make.clone(), Some(episode_steps));
         Self { assembly, sampler, learner: assembly.learner(params), learned: Learned::default() }
     }
 
@@ -84,7 +83,7 @@ impl<'a> Gradient<'a> {
         self.learned.discarded_episodes += batch.faults.len() as u64;
         let policy = &self.assembly.policy;
         let totals = policy.space().totals(&policy.design(self.learner.params()));
-        let returns = mean_returns(&batch, self.assembly.spec().discount());
+        let returns = mean_returns(&batch, self.assembly.experiment().discount());
         Ok(self.learned.tell(returns, Some(&update), totals, run)?)
     }
 
@@ -97,14 +96,14 @@ impl<'a> Gradient<'a> {
 
     /// The share of the budget that is spent.
     fn progress(&self) -> f64 {
-        self.learned.env_steps as f64 / self.assembly.spec().train.env_steps as f64
+        self.learned.env_steps as f64 / self.assembly.experiment().train.env_steps as f64
     }
 
     /// The episodes of the iteration at hand.
     fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
-        let train = &self.assembly.spec().train;
+        let train = &self.assembly.experiment().train;
         let asked = Episodes {
-            seed: self.assembly.spec().seed,
+            seed: self.assembly.experiment().seed,
             iteration: self.learned.iterations,
             indices: 0..train.episodes_per_iteration as u64,
             progress: self.progress(),
@@ -115,7 +114,7 @@ impl<'a> Gradient<'a> {
 
     /// The update of the iteration at hand.
     fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
-        let asked = self.assembly.spec().train.episodes_per_iteration;
+        let asked = self.assembly.experiment().train.episodes_per_iteration;
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
         if in_a_row >= MOST_FAULTY_ITERATIONS

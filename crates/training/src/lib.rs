@@ -1,6 +1,6 @@
-//! Trainings: experiment files, their assembly, the loops that learn and search, evaluation and statistics.
+//! Trainings: the assembly of an experiment, the loops that learn and search, evaluation and statistics.
 //!
-//! A program that embeds training needs three calls: [`spec::load`] and [`spec::resolve`] an experiment,
+//! A program that embeds training needs three calls: [`resolve`](hwasp_experiment::resolve) an experiment,
 //! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
 
 #![forbid(unsafe_code)]
@@ -15,21 +15,19 @@ mod metrics;
 mod observer;
 mod paired;
 mod search;
-pub mod spec;
 pub mod stats;
 mod train;
-mod worlds;
 
-pub use assemble::{AssembleError, Assembly, LearnerSettings, law, total_name};
+pub use assemble::{AssembleError, Assembly, total_name};
 pub use checkpoint::Checkpoint;
 pub use error::TrainError;
 pub use evaluate::{
     EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native, held_out, sampler,
 };
 pub use gradient::repeat;
+pub use hwasp_problem::World;
 pub use learned::TRAILING;
 pub use metrics::MetricsRow;
 pub use observer::{Event, Fault, Observer, ObserverError};
 pub use paired::{Change, Reference};
 pub use train::{Trained, beginning, params_at, train, train_from};
-pub use worlds::{Problems, World};

@@ -63,7 +63,7 @@ fn tried(
     asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<(Evaluation, Vec<Option<Trial>>), EvaluateError> {
-    let results = rollouts(assembly, &assembly.problem.deployment, design, params, asked, executor)?;
+    let results = rollouts(assembly, &assembly.worlds.deployment, design, params, asked, executor)?;
     Ok((Evaluation::new(&results, asked)?, trials(&results)))
 }
 

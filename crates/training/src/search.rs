@@ -6,18 +6,18 @@ use std::ops::Range;
 
 use hwasp_algos::{Archive, Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter};
 use hwasp_core::{EpisodeKind, Episodes, Policy, Purpose, Sampler, Serial, stream};
+use hwasp_experiment::{Method, Score};
 use rand::RngExt;
 
 use self::state::{Generation, Scored, State};
-use crate::assemble::{Assembly, FINAL_EPISODES, popsize};
+use crate::assemble::{Assembly, FINAL_EPISODES};
 use crate::error::TrainError;
 use crate::gradient::{gradient, mean_returns};
 use crate::learned::{Clock, Learned, Loop};
 use crate::observer::Event;
-use crate::spec::{Method, Score};
 
 /// What is searched and how a candidate is scored.
-struct Problem<'a> {
+struct Candidates<'a> {
     assembly: &'a Assembly,
     sampler: Sampler,
     /// The policy's parameters at the start.
@@ -26,8 +26,8 @@ struct Problem<'a> {
 
 /// Searches until the budget does not hold another generation, from the beginning or from where a search was interrupted.
 pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
-    let spec = assembly.spec();
-    let problem = Problem::new(assembly);
+    let spec = assembly.experiment();
+    let problem = Candidates::new(assembly);
     let mut state = problem.state(from)?;
     run.clock = Clock::start(state.learned.wall_s);
     while state.search.stopped().is_none() {
@@ -49,54 +49,39 @@ pub(crate) fn search(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Arch
 
 /// The parameters of the best candidate that an interrupted search had found; those of the start where none was scored.
 pub(crate) fn best_so_far(assembly: &Assembly, from: &Archive) -> Result<Vec<f32>, TrainError> {
-    let problem = Problem::new(assembly);
+    let problem = Candidates::new(assembly);
     let best = problem.state(Some(from))?.best;
     Ok(best.map_or(problem.start, |(_, params)| params))
 }
 
-impl<'a> Problem<'a> {
+impl<'a> Candidates<'a> {
     fn new(assembly: &'a Assembly) -> Self {
-        let steps = assembly.spec().train.episode_steps;
-        let sampler = Sampler::new(assembly.policy.clone(), assembly.problem.training.make.clone(), Some(steps));
+        let steps = assembly.experiment().train.episode_steps;
+        let sampler = Sampler::new(assembly.policy.clone(), assembly.worlds.training.make.clone(), Some(steps));
         Self { assembly, sampler, start: assembly.init() }
     }
 
     /// A search at its beginning, or where it was interrupted.
     fn state(&self, from: Option<&Archive>) -> Result<State, TrainError> {
-        let spec = self.assembly.spec();
+        let spec = self.assembly.experiment();
         let filters = spec.method == Method::Ars && spec.ars.variant.filters();
         let filter = filters.then(|| StateFilter::new(self.assembly.policy.obs_dim()));
         Ok(State::new(self.searcher()?, filter, self.start.len(), from)?)
     }
 
     fn searcher(&self) -> Result<Box<dyn Search>, SearchError> {
-        let spec = self.assembly.spec();
+        let spec = self.assembly.experiment();
         let (cmaes, ars) = (&spec.cmaes, &spec.ars);
         let start = self.coordinates();
         // Fractions of ranges have limits.
         let limits = |at: f64| spec.method.trains_inside().then(|| vec![at; start.len()]);
         match spec.method {
             Method::Ars | Method::ArsRl => {
-                let config = ArsConfig {
-                    directions: ars.directions,
-                    top: ars.top,
-                    step_size: ars.step_size,
-                    noise_std: ars.noise_std,
-                    lower: limits(0.0),
-                    upper: limits(1.0),
-                };
+                let config = ArsConfig { lower: limits(0.0), upper: limits(1.0), ..ars.config.clone() };
                 Ok(Box::new(Ars::new(config, start, spec.seed)?))
             }
             _ => {
-                let config = CmaesConfig {
-                    sigma: cmaes.sigma,
-                    popsize: popsize(cmaes),
-                    lower: limits(0.0),
-                    upper: limits(1.0),
-                    restarts: cmaes.restarts as u32,
-                    separable: cmaes.separable,
-                    active: cmaes.active,
-                };
+                let config = CmaesConfig { lower: limits(0.0), upper: limits(1.0), ..cmaes.clone() };
                 Ok(Box::new(Cmaes::new(config, &start, spec.seed)?))
             }
         }
@@ -105,7 +90,7 @@ impl<'a> Problem<'a> {
     /// The start as the search sees it: all parameters, or the design as fractions of its ranges.
     fn coordinates(&self) -> Vec<f64> {
         let policy = &self.assembly.policy;
-        if !self.assembly.spec().method.trains_inside() {
+        if !self.assembly.experiment().method.trains_inside() {
             return self.start.iter().map(|&p| f64::from(p)).collect();
         }
         let design = policy.design(&self.start);
@@ -118,7 +103,7 @@ impl<'a> Problem<'a> {
 
     /// A candidate as parameters of the policy, without a filter.
     fn params(&self, candidate: &[f64]) -> Vec<f32> {
-        if !self.assembly.spec().method.trains_inside() {
+        if !self.assembly.experiment().method.trains_inside() {
             return candidate.iter().map(|&x| x as f32).collect();
         }
         let policy = &self.assembly.policy;
@@ -141,7 +126,7 @@ impl<'a> Problem<'a> {
     }
 
     fn pick(&self, (discounted, undiscounted): (f64, f64)) -> f64 {
-        match self.assembly.spec().search.score {
+        match self.assembly.experiment().search.score {
             Score::Return => undiscounted,
             Score::DiscountedReturn => discounted,
         }
@@ -149,7 +134,7 @@ impl<'a> Problem<'a> {
 
     /// Runs episodes. One that fails fails its candidate, which is charged all of its steps.
     fn run(&self, params: Vec<f32>, iteration: u64, indices: Range<u64>, filters: bool) -> Scored {
-        let spec = self.assembly.spec();
+        let spec = self.assembly.experiment();
         let kind = if spec.search.noise { EpisodeKind::Training } else { EpisodeKind::Deterministic };
         let count = indices.end - indices.start;
         let asked = Episodes { seed: spec.seed, iteration, indices, progress: 0.0, kind };
@@ -178,8 +163,8 @@ impl<'a> Problem<'a> {
     ) -> Result<Scored, TrainError> {
         let policy = &self.assembly.policy;
         // TOML holds no seed beyond 2^63.
-        let seed = stream(self.assembly.spec().seed, Purpose::InnerSeed, generation, 0).random::<u64>() >> 1;
-        let env_steps = self.assembly.spec().search.inner_env_steps;
+        let seed = stream(self.assembly.experiment().seed, Purpose::InnerSeed, generation, 0).random::<u64>() >> 1;
+        let env_steps = self.assembly.experiment().search.inner_env_steps;
         let inner = self.assembly.frozen(&policy.design(&params), seed, env_steps)?;
         match gradient(&inner, run, from) {
             Ok(learned) => {
@@ -228,7 +213,7 @@ impl<'a> Problem<'a> {
         let State { search, filter, best, mut learned, .. } = state;
         learned.params = match best {
             None => self.start,
-            Some((_, best)) if self.assembly.spec().method.trains_inside() => best,
+            Some((_, best)) if self.assembly.experiment().method.trains_inside() => best,
             Some((_, best)) => {
                 let both = [self.acting(&search.center(), filter.as_ref()), best];
                 let scored = both.map(|params| self.run(params, search.generation(), 0..FINAL_EPISODES as u64, false));

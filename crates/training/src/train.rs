@@ -59,7 +59,7 @@ pub fn train_from(
     observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Trained, TrainError> {
-    let spec = assembly.spec();
+    let spec = assembly.experiment();
     let (totals, resumed) = (assembly.total_names(), from.map(|checkpoint| checkpoint.env_steps));
     observer.on(Event::Started { env_steps: spec.train.env_steps, resumed, totals: &totals })?;
     let mut run = Loop { executor, observer, stop, clock: Clock::start(0.0) };
@@ -96,7 +96,7 @@ pub fn beginning(assembly: &Assembly, params: Vec<f32>) -> Result<Checkpoint, Tr
 /// The parameters that a training had come to: the learner's, or the best of a search.
 pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
     let archive = &checkpoint.archive;
-    if assembly.spec().method.searches() {
+    if assembly.experiment().method.searches() {
         return best_so_far(assembly, archive);
     }
     Ok(Gradient::new(assembly, Some(archive))?.params())

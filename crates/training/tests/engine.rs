@@ -1,7 +1,5 @@
 //! The engine is found when a program of this crate starts; with a wrong path of the linker this test does not even run.
 
-#![cfg(feature = "mujoco")]
-
 use hwasp_mujoco::engine::Simulation;
 
 #[test]

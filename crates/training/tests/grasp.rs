@@ -1,6 +1,5 @@
 //! The hand from an experiment file to a trained controller.
 
-#![cfg(feature = "mujoco")]
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use std::sync::atomic::AtomicBool;

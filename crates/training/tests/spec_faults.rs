@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_training::spec::{LONGEST_FILE, Layers, load, resolve};
+use hwasp_experiment::{LONGEST_FILE, Layers, load, resolve};
 
 /// The faults of a text that is not what it should be.
 fn faults(text: &str, method: Option<&str>) -> String {

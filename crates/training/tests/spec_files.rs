@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_training::spec::{EXPERIMENTS, InitialSpec, Layers, Method, Place, Problem, Spec, load, resolve};
+use hwasp_experiment::{EXPERIMENTS, Experiment, InitialDesign, Layers, Method, Place, Problem, load, resolve};
 use proptest::prelude::*;
 
 /// What a run folder keeps has to give the same experiment again.
-fn read_back(spec: &Spec) -> Spec {
+fn read_back(spec: &Experiment) -> Experiment {
     let text = spec.to_toml().expect("a spec is made of what TOML has");
     assert!(!text.contains("[methods"), "{text}");
     let layers = Layers::from_text("experiment.toml", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -74,7 +74,7 @@ fn options_need_no_quotes() {
     let spec = resolve(layers, None).unwrap();
     assert_eq!(spec.noise.effort.unwrap().value, 2.5);
     assert_eq!(spec.train.env_steps, 1_000_000);
-    assert_eq!(spec.design.initial, InitialSpec::Middle);
+    assert_eq!(spec.design.initial, InitialDesign::Middle);
     let Problem::Stiffness(problem) = &spec.task.problem else { panic!("{:?}", spec.task) };
     assert_eq!(problem.base.effort_clip, Some(5.0));
     let places: Vec<_> = (0..10).filter(|&i| spec.design.place_of(i) != Place::Graph).collect();

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
+use hwasp_experiment::{EXPERIMENTS, Method, load, resolve};
 use hwasp_training::Assembly;
-use hwasp_training::spec::{EXPERIMENTS, Method, load, resolve};
 
 #[test]
 fn groups_efforts_and_observations_are_those_of_the_task() {

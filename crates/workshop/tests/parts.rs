@@ -7,16 +7,20 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
-use hwasp_workshop::parts::{Bench, Catalogue, JointParts, Reason, SelectError, TorsionSpring, select, unfit};
+use hwasp_workshop::parts::{Bench, JointParts, Reason, SelectError, SpringCatalogue, TorsionSpring, select, unfit};
 
 const HEADER: &str = "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm";
 
-fn chosen(design: &[f64; DESIGN_LEN], catalogue: &Catalogue, bench: &Bench) -> Result<Vec<JointParts>, SelectError> {
+fn chosen(
+    design: &[f64; DESIGN_LEN],
+    catalogue: &SpringCatalogue,
+    bench: &Bench,
+) -> Result<Vec<JointParts>, SelectError> {
     select(&HandDescription::default(), design, &HandRange::Large.bounds(), catalogue, bench)
 }
 
-fn catalogue(rows: &str) -> Result<Catalogue, String> {
-    Catalogue::parse("mine.csv", format!("{HEADER}\n{rows}").as_bytes()).map_err(|error| error.to_string())
+fn catalogue(rows: &str) -> Result<SpringCatalogue, String> {
+    SpringCatalogue::parse("mine.csv", format!("{HEADER}\n{rows}").as_bytes()).map_err(|error| error.to_string())
 }
 
 /// A spring that suits the bench as it is.
@@ -58,7 +62,7 @@ fn each_limit_refuses() {
 /// All springs and all holes, the torque compared at many angles: nothing that will do is nearer.
 #[test]
 fn the_nearest_parts_are_found() {
-    let (catalogue, hand) = (Catalogue::built_in().unwrap(), HandDescription::default());
+    let (catalogue, hand) = (SpringCatalogue::built_in().unwrap(), HandDescription::default());
     let fine = Bench { hole_pitch: 9f64.to_radians(), springs: 1, spring_room: 0.008, ..Bench::default() };
     for (design, bench) in [PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE]
         .into_iter()
@@ -106,7 +110,7 @@ fn the_nearest_parts_are_found() {
 /// A radius on its limit goes to the next groove inside.
 #[test]
 fn grooves_stay_within_the_limits() {
-    let (catalogue, bench) = (Catalogue::built_in().unwrap(), Bench::default());
+    let (catalogue, bench) = (SpringCatalogue::built_in().unwrap(), Bench::default());
     let mut design = SMALL_CENTRE;
     (design[0], design[1]) = (0.012, 0.002);
     let found = chosen(&design, &catalogue, &bench).unwrap();
@@ -129,7 +133,7 @@ fn a_catalogue_without_a_spring_for_a_joint() {
         "stressed,0.40,5.8,8.25,90,10,400",
     ];
     let text = format!("{HEADER},strength_mpa\n{}", rows.join("\n"));
-    let catalogue = Catalogue::parse("mine.csv", text.as_bytes()).unwrap();
+    let catalogue = SpringCatalogue::parse("mine.csv", text.as_bytes()).unwrap();
     let error = chosen(&PAPER_HWASP, &catalogue, &Bench::default()).unwrap_err();
     insta::assert_snapshot!(error);
 }
@@ -138,7 +142,7 @@ fn a_catalogue_without_a_spring_for_a_joint() {
 fn a_suppliers_file_is_read() {
     let text = "\u{feff}# my stock\nturns, part ,outer_mm,wire_mm,leg_mm,leg_angle_deg,modulus_gpa,strength_mpa\n\n\
                 8.25,\"LTL, 12 \"\"L\"\"\",5.3,0.4,10,90,193,1900\n8.25,plain,5.3,0.4,10,360,,\n";
-    let catalogue = Catalogue::parse("stock.csv", text.as_bytes()).unwrap();
+    let catalogue = SpringCatalogue::parse("stock.csv", text.as_bytes()).unwrap();
     let [steel, plain] = &catalogue.springs[..] else { panic!("{catalogue:?}") };
     assert_eq!((&*steel.part, steel.spring.modulus, steel.spring.strength), ("LTL, 12 \"L\"", 193e9, 1900e6));
     assert_eq!((plain.spring.modulus, plain.spring.turns, plain.leg_angle), (207e9, 8.25, TAU));
@@ -172,10 +176,10 @@ fn every_wrong_row_is_told_with_its_line() {
         "part,wire_mm,wire_mm,turns,leg_angle_deg,leg_mm\n",
         "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm\n\u{0}",
     ] {
-        let error = Catalogue::parse("mine.csv", text.as_bytes()).unwrap_err();
+        let error = SpringCatalogue::parse("mine.csv", text.as_bytes()).unwrap_err();
         write!(transcript, "\n\n{text:?}\n{error}").unwrap();
     }
-    let broken = Catalogue::parse("mine.csv", b"part,wire_mm\n\xff\xfe,1\n").unwrap_err();
+    let broken = SpringCatalogue::parse("mine.csv", b"part,wire_mm\n\xff\xfe,1\n").unwrap_err();
     write!(transcript, "\n\n{broken}").unwrap();
     let many = catalogue(&"x,1\n".repeat(50)).unwrap_err();
     assert!(many.contains("\n  and 30 more\n") && many.lines().count() == 23, "{many}");

@@ -1,23 +1,24 @@
 //! Parts in simulation: what snapping changes, the same for any number of threads, and the controller trained further.
 
-#![cfg(feature = "mujoco")]
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Executor, Serial};
+use hwasp_experiment::{Experiment, Place, Problem};
 use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
-use hwasp_training::spec::{Place, Problem, Spec};
 use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, spec, train, train_from};
-use hwasp_workshop::parts::{Bench, Catalogue, PartsError, PartsList, SHEET, Snapped, Tuning, TuningFolder, snap};
+use hwasp_workshop::parts::{
+    Bench, PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, snap,
+};
 
 fn empty(name: &str) -> PathBuf {
     hwasp_testing::empty(env!("CARGO_TARGET_TMPDIR"), name)
 }
 
-fn provenance(spec: &Spec) -> Provenance {
+fn provenance(spec: &Experiment) -> Provenance {
     Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 
@@ -46,7 +47,7 @@ fn run() -> (Assembly, Vec<f32>) {
 }
 
 fn snapped(assembly: &Assembly, params: &[f32]) -> Snapped {
-    snap(assembly, params, &Catalogue::built_in().unwrap(), &Bench::default()).unwrap()
+    snap(assembly, params, &SpringCatalogue::built_in().unwrap(), &Bench::default()).unwrap()
 }
 
 fn list(assembly: &Assembly, params: &[f32], executor: &dyn Executor) -> PartsList {
@@ -75,7 +76,7 @@ fn snapping_changes_the_design_by_what_is_told() {
     // What is said of it is what it is worth: the numbers of an evaluation.
     assert_eq!(list.worth.trained, evaluate(&assembly, &params, ASKED, &Serial).unwrap());
     let built: Vec<f64> = list.design.iter().map(|d| d.built).collect();
-    let on_parts = evaluate_in(&assembly, &assembly.problem.deployment, &built, &params, ASKED, &Serial).unwrap();
+    let on_parts = evaluate_in(&assembly, &assembly.worlds.deployment, &built, &params, ASKED, &Serial).unwrap();
     assert_eq!(list.worth.snapped, on_parts);
     let difference = on_parts.undiscounted_return.mean - list.worth.trained.undiscounted_return.mean;
     assert!((list.worth.snapping.undiscounted_return.mean - difference).abs() < 1e-9 && difference != 0.0);
@@ -102,7 +103,7 @@ fn a_controller_is_trained_further_on_parts() {
         Err(PartsError::ShortTuning { env_steps: 479, rows: 480 })
     ));
     let tuning = Tuning::new(&assembly, &params, &snapped.built, 960, ASKED).unwrap();
-    let (spec, path) = (tuning.assembly.spec(), empty("parts-tuned"));
+    let (spec, path) = (tuning.assembly.experiment(), empty("parts-tuned"));
     assert_eq!((spec.design.placement, spec.train.env_steps), (Place::Fixed, 960));
     let Problem::ZGrasp(task) = &spec.task.problem else { panic!("{:?}", spec.task) };
     assert_eq!((task.safety_growth, spec.noise.command_final.clone()), ([0.0; 2], None));
@@ -127,7 +128,7 @@ fn a_controller_is_trained_further_on_parts() {
     folder.finish(&tuning.assembly, &trained, &no_extras).unwrap();
     drop(folder);
     let saved = SavedRun::open(&path).unwrap();
-    assert_eq!(saved.assembly().spec(), spec);
+    assert_eq!(saved.assembly().experiment(), spec);
     let worth = judge.tuned(&trained.params, "tuned", 960).unwrap().tuned.unwrap();
     assert_eq!(worth.evaluation, trained.evaluation);
     assert_eq!(worth.evaluation, evaluate(saved.assembly(), &saved.params().unwrap(), ASKED, &Serial).unwrap());
@@ -136,6 +137,6 @@ fn a_controller_is_trained_further_on_parts() {
     let there = tuning.folder(&path, provenance(spec)).unwrap();
     assert!(matches!(there, TuningFolder::Finished(params) if params == trained.params));
     let longer = Tuning::new(&assembly, &params, &snapped.built, 1440, ASKED).unwrap();
-    let taken = longer.folder(&path, provenance(longer.assembly.spec()));
+    let taken = longer.folder(&path, provenance(longer.assembly.experiment()));
     assert!(matches!(taken, Err(RunError::Exists { .. })));
 }

@@ -36,7 +36,7 @@ fn sensitivities_are_those_of_perturbed_designs() {
     let built = assembly.built(&params);
     let found = found(&assembly, &params, &["stiffness[1]=0.5 N/m"], &Serial);
     let worth = |design: &[f64]| {
-        evaluate_in(&assembly, &assembly.problem.deployment, design, &params, ASKED, &Serial)
+        evaluate_in(&assembly, &assembly.worlds.deployment, design, &params, ASKED, &Serial)
             .unwrap()
             .undiscounted_return
     };

@@ -1,5 +1,6 @@
 //! `hwasp compare`.
 
+use hwasp_experiment::Catalogue;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -13,15 +14,16 @@ use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
 use crate::output;
 
-pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let contenders = args.methods.iter().map(|text| Contender::parse(text)).collect::<Result<Vec<_>, _>>();
     let contenders = contenders.map_err(Failure::input)?;
     let further: Vec<_> = args.env_steps.map(|steps| ("env-steps", steps.to_string())).into_iter().collect();
-    let layers = layers(&args.experiment, &args.set, &further)?;
+    let layers = layers(&args.experiment, &args.set, &further, catalogue)?;
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: 0..args.seeds };
-    let experiment = run_grid(&grid, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?.0;
+    let experiment =
+        run_grid(&grid, catalogue, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?.0;
     if !args.quiet {
         output::print(&experiment)?;
     }
@@ -31,6 +33,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
 /// Runs a grid into a folder and writes its tables and pictures. Returns what to print, and the cells.
 pub(super) fn run_grid(
     grid: &Grid,
+    catalogue: &Catalogue,
     folder: &Path,
     threads: Option<NonZeroUsize>,
     threshold: Option<f64>,
@@ -38,7 +41,7 @@ pub(super) fn run_grid(
     stop: &AtomicBool,
 ) -> Result<(String, Vec<CellResult>), Failure> {
     // Everything that was asked for is checked before the first cell begins.
-    let cells = grid.cells(folder).map_err(Failure::input)?;
+    let cells = grid.cells(folder, catalogue).map_err(Failure::input)?;
     let first = cells.first().ok_or_else(|| Failure::input("there is nothing to compare"))?;
     let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
     let progress = GridProgress::new(quiet, threads);

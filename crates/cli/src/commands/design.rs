@@ -1,5 +1,6 @@
 //! `hwasp design`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_workshop::design::{DesignReport, write_closing};
 
 use super::run_folder;
@@ -7,8 +8,8 @@ use crate::args::DesignArgs;
 use crate::failure::Failure;
 use crate::{output, report};
 
-pub(crate) fn run(args: &DesignArgs) -> Result<(), Failure> {
-    let report = DesignReport::open(run_folder(&args.run)?).map_err(Failure::input)?;
+pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let report = DesignReport::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;
     if args.out.is_some() && report.hand.is_none() {
         let task = &report.task;
         return Err(Failure::input(format!(

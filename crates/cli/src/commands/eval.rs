@@ -1,5 +1,6 @@
 //! `hwasp eval`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_training::{EvaluateError, evaluate, evaluate_native};
 
 use super::{executor, saved_run};
@@ -7,10 +8,10 @@ use crate::args::EvalArgs;
 use crate::failure::Failure;
 use crate::{output, report};
 
-pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
-    let saved = saved_run(&args.run, &args.set)?;
+pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let saved = saved_run(&args.run, &args.set, catalogue)?;
     let params = saved.params().map_err(Failure::input)?;
-    let asked = args.held_out.asked(&saved.assembly().spec().train);
+    let asked = args.held_out.asked(&saved.assembly().experiment().train);
     let executor = executor(args.held_out.threads)?;
     let evaluation = if args.native_tendons {
         evaluate_native(saved.assembly(), &params, asked, &*executor)
@@ -22,7 +23,7 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
         error => error.into(),
     })?;
     if args.per_shape && evaluation.success.is_empty() {
-        let task = saved.assembly().spec().task.name();
+        let task = saved.assembly().experiment().task.name();
         output::remark(&format!("note: {task} knows neither success nor shapes"));
     }
     let text = if args.json {

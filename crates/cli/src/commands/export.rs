@@ -1,5 +1,6 @@
 //! `hwasp export`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_export::{ExportError, Kind, Source, export};
 
 use super::run_folder;
@@ -7,8 +8,8 @@ use crate::args::ExportArgs;
 use crate::failure::Failure;
 use crate::{output, report};
 
-pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
-    let source = Source::open(run_folder(&args.run)?).map_err(Failure::input)?;
+pub(crate) fn run(args: &ExportArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let source = Source::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join("export"));
     let (mut kinds, mut left_out) = (args.kinds.asked(), Vec::new());
     if kinds.is_empty() {

@@ -1,5 +1,6 @@
 //! `hwasp graph`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_plot::drawing;
 
 use super::{experiment, write_out};
@@ -7,8 +8,8 @@ use crate::args::GraphArgs;
 use crate::failure::Failure;
 use crate::output;
 
-pub(crate) fn run(args: &GraphArgs) -> Result<(), Failure> {
-    let (_, assembly) = experiment(&args.experiment.experiment, &args.experiment.settings, &[])?;
+pub(crate) fn run(args: &GraphArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let (_, assembly) = experiment(&args.experiment.experiment, &args.experiment.settings, &[], catalogue)?;
     let drawing = drawing(&assembly);
     let Some(path) = &args.out else {
         return Ok(output::print(&drawing.dot)?);

@@ -2,23 +2,27 @@
 
 use std::fmt::Write;
 
-use hwasp_training::spec::{self, EXPERIMENTS};
+use hwasp_experiment::{Catalogue, Layers, resolve};
 
 use crate::failure::Failure;
 use crate::output;
 
-pub(crate) fn run() -> Result<(), Failure> {
-    let width = EXPERIMENTS.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+pub(crate) fn run(catalogue: &Catalogue) -> Result<(), Failure> {
+    let presets = catalogue.presets();
+    let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
     let mut text = String::new();
-    for (name, _) in EXPERIMENTS {
-        let spec = spec::resolve(spec::load(name)?, None)?;
-        let _ = writeln!(text, "{name:width$}  {}", spec.description);
+    for preset in &presets {
+        let layers = Layers::from_text(preset.name, preset.text)?;
+        let experiment = resolve(layers, None, catalogue)?;
+        let _ = writeln!(text, "{:width$}  {}", preset.name, experiment.description);
     }
-    for own in spec::registered() {
+    for problem in catalogue.problems().iter().filter(|problem| problem.presets().is_empty()) {
+        let about = "a problem of this program";
         let _ = writeln!(
             text,
-            "{:width$}  a problem of this program: task.problem = \"{0}\" in an experiment file",
-            own.name()
+            "{:width$}  {about}: task.problem = \"{}\" in an experiment file",
+            problem.name(),
+            problem.name()
         );
     }
     Ok(output::print(&text)?)

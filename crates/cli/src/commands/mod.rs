@@ -24,16 +24,21 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Executor, Serial, Threads};
+use hwasp_experiment::{Catalogue, Experiment, Layers, load, resolve};
 use hwasp_runs::SavedRun;
 use hwasp_training::Assembly;
-use hwasp_training::spec::{self, Layers, Spec};
 
 use crate::args::SettingsArgs;
 use crate::failure::{Failure, OTHER_FILE};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
-fn layers(experiment: &str, set: &[String], further: &[(&str, String)]) -> Result<Layers, Failure> {
-    let mut layers = spec::load(experiment).map_err(Failure::input)?;
+fn layers(
+    experiment: &str,
+    set: &[String],
+    further: &[(&str, String)],
+    catalogue: &Catalogue,
+) -> Result<Layers, Failure> {
+    let mut layers = load(experiment, catalogue).map_err(Failure::input)?;
     for assignment in set {
         layers = layers.with_assignment(assignment);
     }
@@ -50,16 +55,21 @@ fn typed() -> Vec<String> {
 }
 
 /// The experiment that arguments name, with further settings on top, put together.
-fn experiment(name: &str, set: &SettingsArgs, further: &[(&str, String)]) -> Result<(Spec, Assembly), Failure> {
-    let layers = layers(name, set.set(), further)?;
-    let spec = spec::resolve(layers, set.method()).map_err(Failure::input)?;
+fn experiment(
+    name: &str,
+    set: &SettingsArgs,
+    further: &[(&str, String)],
+    catalogue: &Catalogue,
+) -> Result<(Experiment, Assembly), Failure> {
+    let layers = layers(name, set.set(), further, catalogue)?;
+    let spec = resolve(layers, set.method(), catalogue).map_err(Failure::input)?;
     let assembly = Assembly::new(&spec).map_err(Failure::input)?;
     Ok((spec, assembly))
 }
 
 /// The run that was written to a folder.
-fn saved_run(path: &Path, set: &[String]) -> Result<SavedRun, Failure> {
-    SavedRun::open_with(run_folder(path)?, set).map_err(Failure::input)
+fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
+    SavedRun::open_with(run_folder(path)?, set, catalogue).map_err(Failure::input)
 }
 
 /// The folder of a run, if there is a folder at all.

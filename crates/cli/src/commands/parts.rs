@@ -1,11 +1,12 @@
 //! `hwasp parts`.
 
+use hwasp_experiment::Catalogue;
 use std::path::Path;
 
 use hwasp_core::Executor;
 use hwasp_runs::{Provenance, RunError};
 use hwasp_workshop::parts::{
-    Bench, Catalogue, Judge, PARTS, PartsError, PartsWorth, SHEET, TUNED, Tuning, TuningFolder, snap,
+    Bench, Judge, PARTS, PartsError, PartsWorth, SHEET, SpringCatalogue, TUNED, Tuning, TuningFolder, snap,
 };
 
 use super::train::into_folder;
@@ -14,22 +15,22 @@ use crate::args::PartsArgs;
 use crate::failure::Failure;
 use crate::{log, output, report};
 
-pub(crate) fn run(args: &PartsArgs) -> Result<(), Failure> {
-    let catalogue =
-        args.catalogue.as_deref().map_or_else(Catalogue::built_in, Catalogue::open).map_err(Failure::input)?;
+pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let springs = args.catalogue.as_deref().map_or_else(SpringCatalogue::built_in, SpringCatalogue::open);
+    let springs = springs.map_err(Failure::input)?;
     let mut bench = Bench::default();
     args.bench.iter().try_for_each(|given| bench.set(given)).map_err(Failure::input)?;
-    let saved = saved_run(&args.run, &[])?;
+    let saved = saved_run(&args.run, &[], catalogue)?;
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
-    let asked = args.held_out.asked(&assembly.spec().train);
-    let snapped = snap(assembly, &params, &catalogue, &bench).map_err(failure)?;
+    let asked = args.held_out.asked(&assembly.experiment().train);
+    let snapped = snap(assembly, &params, &springs, &bench).map_err(failure)?;
     let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
 
     // What cannot be begun is known before the work begins.
     let tuning = args.fine_tune.map(|steps| Tuning::new(assembly, &params, &snapped.built, steps, asked));
     let tuning = tuning.transpose().map_err(failure)?;
     let path = folder.join(TUNED);
-    let provenance = Provenance::new(typed(), args.held_out.threads.get(), assembly.spec().seed);
+    let provenance = Provenance::new(typed(), args.held_out.threads.get(), assembly.experiment().seed);
     let tuning = tuning.map(|tuning| Ok((tuning.folder(&path, provenance)?, tuning))).transpose();
     let tuning = tuning.map_err(|error: RunError| Failure::input(error))?;
 
@@ -55,7 +56,7 @@ fn tuned(
     path: &Path,
     executor: &dyn Executor,
 ) -> Result<PartsWorth, Failure> {
-    let spec = tuning.assembly.spec();
+    let spec = tuning.assembly.experiment();
     let params = match there {
         TuningFolder::Finished(params) => {
             output::remark(&format!("{} holds this training already", path.display()));

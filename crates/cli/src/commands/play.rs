@@ -1,5 +1,6 @@
 //! `hwasp play`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_report::play;
 use hwasp_runs::SavedRun;
 
@@ -7,8 +8,8 @@ use super::saved_run;
 use crate::args::PlayArgs;
 use crate::failure::Failure;
 
-pub(crate) fn run(args: &PlayArgs) -> Result<(), Failure> {
-    let saved = saved_run(&args.run, &args.set)?;
+pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let saved = saved_run(&args.run, &args.set, catalogue)?;
     let params = saved.params().map_err(Failure::input)?;
     play::check(saved.assembly()).map_err(Failure::input)?;
     draw(args, &saved, &params)
@@ -26,7 +27,7 @@ fn draw(_: &PlayArgs, _: &SavedRun, _: &[f32]) -> Result<(), Failure> {
 fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure> {
     use crate::output;
 
-    let spec = saved.assembly().spec();
+    let spec = saved.assembly().experiment();
     let options = play::PlayOptions {
         first: args.first,
         episodes: args.episodes,

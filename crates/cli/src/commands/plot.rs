@@ -1,5 +1,6 @@
 //! `hwasp plot`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_plot::{PlotError, PlotOptions, curves, plot_options, saved_curve, write_plot};
 
 use super::saved_run;
@@ -7,8 +8,8 @@ use crate::args::PlotArgs;
 use crate::failure::Failure;
 use crate::output;
 
-pub(crate) fn run(args: &PlotArgs) -> Result<(), Failure> {
-    let runs = args.runs.iter().map(|path| saved_run(path, &[])).collect::<Result<Vec<_>, _>>()?;
+pub(crate) fn run(args: &PlotArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let runs = args.runs.iter().map(|path| saved_run(path, &[], catalogue)).collect::<Result<Vec<_>, _>>()?;
     let x_axis = args.axis.axis();
     let all = runs.iter().map(|run| saved_curve(run, x_axis)).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let mut options = PlotOptions { x_axis, ..plot_options(runs[0].assembly(), args.title.clone()) };

@@ -1,5 +1,6 @@
 //! `hwasp replay`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_runs::replay;
 
 use super::executor;
@@ -7,8 +8,8 @@ use crate::args::ReplayArgs;
 use crate::failure::Failure;
 use crate::{output, report};
 
-pub(crate) fn run(args: &ReplayArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ReplayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let executor = executor(args.threads)?;
-    let replay = replay(&args.file, &*executor).map_err(Failure::input)?;
+    let replay = replay(&args.file, catalogue, &*executor).map_err(Failure::input)?;
     Ok(output::print(&report::replay(&replay))?)
 }

@@ -1,5 +1,6 @@
 //! `hwasp report`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_report::report;
 
 use super::{run_folder, write_out};
@@ -7,7 +8,7 @@ use crate::args::ReportArgs;
 use crate::failure::Failure;
 use crate::output;
 
-pub(crate) fn run(args: &ReportArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ReportArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let folder = run_folder(&args.folder)?;
     let out = args.out.clone().unwrap_or_else(|| folder.join("report.html"));
     // A page under another name would be shown as text.
@@ -16,7 +17,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), Failure> {
         let text = "names no page: end it in .html";
         return Err(Failure::input(format!("`{}` {text}", out.display())));
     }
-    let html = report(folder).map_err(Failure::input)?;
+    let html = report(folder, catalogue).map_err(Failure::input)?;
     write_out(&out, &html)?;
     Ok(output::print(&format!("{}\n", out.display()))?)
 }

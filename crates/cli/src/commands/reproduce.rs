@@ -1,5 +1,6 @@
 //! `hwasp reproduce`.
 
+use hwasp_experiment::Catalogue;
 use std::path::PathBuf;
 
 use hwasp_study::{FIGURES, PaperFigure};
@@ -10,7 +11,7 @@ use crate::args::ReproduceArgs;
 use crate::failure::Failure;
 use crate::output;
 
-pub(crate) fn run(args: &ReproduceArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ReproduceArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let Some(figure) = PaperFigure::find(&args.figure) else {
         let known: Vec<String> = FIGURES.iter().map(|f| format!("  {:<12} {}", f.name, f.about)).collect();
         let message =
@@ -23,9 +24,9 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), Failure> {
     output::remark(&format!("{}: {}", figure.name, figure.about));
     let stop = stop_on_signal()?;
     for experiment in figure.experiments {
-        let grid = figure.grid(experiment, args.quick).map_err(Failure::input)?;
+        let grid = figure.grid(experiment, args.quick, catalogue).map_err(Failure::input)?;
         let folder = folder.join(experiment.replace('/', "-"));
-        let (text, cells) = run_grid(&grid, &folder, args.threads, None, false, &stop)?;
+        let (text, cells) = run_grid(&grid, catalogue, &folder, args.threads, None, false, &stop)?;
         output::print(&text)?;
         let beside = figure.beside(experiment, &cells);
         if !beside.is_empty() {

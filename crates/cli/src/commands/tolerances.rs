@@ -1,5 +1,6 @@
 //! `hwasp tolerances`.
 
+use hwasp_experiment::Catalogue;
 use hwasp_training::EvaluateError;
 use hwasp_workshop::tolerances::{PICTURES, TOLERANCES, errors_of, tolerances};
 
@@ -9,11 +10,11 @@ use crate::failure::Failure;
 use crate::progress::Counter;
 use crate::{output, report};
 
-pub(crate) fn run(args: &TolerancesArgs) -> Result<(), Failure> {
-    let saved = saved_run(&args.run, &[])?;
+pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let saved = saved_run(&args.run, &[], catalogue)?;
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
     let errors = errors_of(assembly, &params, &args.error).map_err(Failure::input)?;
-    let asked = args.held_out.asked(&assembly.spec().train);
+    let asked = args.held_out.asked(&assembly.experiment().train);
     let executor = executor(args.held_out.threads)?;
     let mut counter = Counter::new("designs simulated");
     let found = tolerances(assembly, &params, &errors, asked, &*executor, &mut |done, all| counter.tell(done, all));

@@ -1,5 +1,6 @@
 //! `hwasp train`.
 
+use hwasp_experiment::Catalogue;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -14,11 +15,11 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::{log, output, report};
 
-pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let executor = executor(args.threads)?;
     let (assembly, Resumed { mut folder, found }) = match &args.resume {
-        Some(run) => taken_up(run, args)?,
-        None => begun(args)?,
+        Some(run) => taken_up(run, args, catalogue)?,
+        None => begun(args, catalogue)?,
     };
     let path = folder.path().to_owned();
     log::to_file(&path.join("train.log"));
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
 
     let stop = stop_on_signal()?;
 
-    output::remark(&report::beginning(assembly.spec(), &path, args.resume.is_some(), from));
+    output::remark(&report::beginning(assembly.experiment(), &path, args.resume.is_some(), from));
     let (_, summary) = into_folder(&assembly, &mut folder, from, &*executor, (board.as_mut(), args.quiet), &stop)?;
     if !args.quiet {
         output::print(&report::training(&summary, &path))?;
@@ -68,12 +69,12 @@ fn keeping(args: &TrainArgs) -> Keeping {
 }
 
 /// A new run.
-fn begun(args: &TrainArgs) -> Result<(Assembly, Resumed), Failure> {
+fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed), Failure> {
     let mut further = Vec::new();
     further.extend(args.seed.map(|seed| ("seed", seed.to_string())));
     further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
     let name = args.experiment.as_deref().unwrap_or_default();
-    let (spec, assembly) = experiment(name, &args.settings, &further)?;
+    let (spec, assembly) = experiment(name, &args.settings, &further, catalogue)?;
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
     let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
@@ -82,10 +83,10 @@ fn begun(args: &TrainArgs) -> Result<(Assembly, Resumed), Failure> {
 }
 
 /// A run that was interrupted.
-fn taken_up(run: &Path, args: &TrainArgs) -> Result<(Assembly, Resumed), Failure> {
-    let assembly = saved_run(run_folder(run)?, &[])?.assembly().clone();
-    let provenance = Provenance::new(typed(), args.threads.get(), assembly.spec().seed);
-    let resumed = RunFolder::resume(run, assembly.spec(), provenance, keeping(args)).map_err(Failure::input)?;
+fn taken_up(run: &Path, args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed), Failure> {
+    let assembly = saved_run(run_folder(run)?, &[], catalogue)?.assembly().clone();
+    let provenance = Provenance::new(typed(), args.threads.get(), assembly.experiment().seed);
+    let resumed = RunFolder::resume(run, assembly.experiment(), provenance, keeping(args)).map_err(Failure::input)?;
     Ok((assembly, resumed))
 }
 

@@ -1,6 +1,6 @@
 //! The files of a project. They lie in `templates/`, where those in Rust are compiled and tested as an example of the program.
 
-use hwasp_training::spec::EXPERIMENT;
+use hwasp_experiment::EXPERIMENT;
 
 use super::{Origin, ProjectError};
 

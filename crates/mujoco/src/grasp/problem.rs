@@ -5,7 +5,6 @@ use std::sync::Arc;
 use hwasp_core::MakeEnvironment;
 use hwasp_problem::AnyError;
 use hwasp_tasks::grasp::{GraspTaskSettings, Scene};
-use hwasp_tasks::hand::PalmMotion;
 
 use super::{Grasp, GraspReward, GraspSettings, Ramp};
 
@@ -13,8 +12,8 @@ use super::{Grasp, GraspReward, GraspSettings, Ramp};
 ///
 /// # Errors
 /// Of a hand that cannot be, or of a model that the engine refuses.
-pub fn engine(task: &GraspTaskSettings, palm: PalmMotion, scene: Scene) -> Result<Arc<dyn MakeEnvironment>, AnyError> {
-    let settings = settings_of(task, palm);
+pub fn engine(task: &GraspTaskSettings, scene: Scene) -> Result<Arc<dyn MakeEnvironment>, AnyError> {
+    let settings = settings_of(task);
     let grasp = match scene {
         Scene::Training => {
             // What lifts more than it has to is safe where it has to.
@@ -30,11 +29,10 @@ pub fn engine(task: &GraspTaskSettings, palm: PalmMotion, scene: Scene) -> Resul
 }
 
 /// What an experiment says of its grasps, without the aids to training.
-pub fn settings_of(task: &GraspTaskSettings, palm: PalmMotion) -> GraspSettings {
-    let offset_ramp =
-        task.offset_initial.map(|first| Ramp { first, last: task.offset, progress: task.offset_growth });
+pub fn settings_of(task: &GraspTaskSettings) -> GraspSettings {
+    let offset_ramp = task.offset_initial.map(|first| Ramp { first, last: task.offset, progress: task.offset_growth });
     GraspSettings {
-        palm,
+        palm: task.palm,
         hand: task.hand(),
         range: task.range.into(),
         shapes: task.shapes.clone(),

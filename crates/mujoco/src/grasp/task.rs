@@ -8,7 +8,6 @@ use rand::RngExt;
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
-use hwasp_settings::Choice;
 use hwasp_tasks::grasp::env_spec;
 
 /// The steps at the end of an episode over which a grasp has to hold.

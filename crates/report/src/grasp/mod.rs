@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use self::pose::{Poses, poses};
 use self::sketch::{Frame, Sketch};
-use crate::play::{Moment, PlayError, PlayOptions, Take, film, moments};
+use crate::play::{Moment, PlayError, PlayOptions, Take, check, film, moments};
 use crate::words::decimal;
 
 /// The most episodes that are looked through for one of each shape.
@@ -38,7 +38,7 @@ pub(super) fn section(assembly: &Assembly, params: &[f32]) -> Result<Markup, Pla
     }
     let poses = takes.iter().map(|take| poses(assembly, take)).collect::<Result<Vec<_>, _>>()?;
     let sketch = Sketch::new(&poses);
-    let seed = assembly.spec().train.evaluation_seed;
+    let seed = assembly.experiment().train.evaluation_seed;
     Ok(html! {
         p {
             "The first held-out episode of each shape (seed " (seed) "), by the deterministic controller on the hardware as built, \
@@ -54,8 +54,8 @@ pub(super) fn section(assembly: &Assembly, params: &[f32]) -> Result<Markup, Pla
 
 /// Episodes one after the other until every shape was there.
 fn takes(assembly: &Assembly, params: &[f32]) -> Result<Vec<Take>, PlayError> {
-    let shapes = assembly.grasp_problem()?.shapes.len();
-    let seed = assembly.spec().train.evaluation_seed;
+    let shapes = check(assembly)?.shapes.len();
+    let seed = assembly.experiment().train.evaluation_seed;
     let mut takes: Vec<Take> = Vec::new();
     for first in 0..MOST_EPISODES {
         if takes.len() == shapes {

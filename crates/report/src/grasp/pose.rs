@@ -5,7 +5,7 @@ use hwasp_tasks::hand::{HandDescription, names};
 use hwasp_training::Assembly;
 
 use super::view::{World, along, axes};
-use crate::play::{PlayError, Take};
+use crate::play::{PlayError, Take, grasp};
 
 /// One moment.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub(super) struct Poses {
 
 /// The poses of a film.
 pub(super) fn poses(assembly: &Assembly, take: &Take) -> Result<Poses, PlayError> {
-    let grasp = assembly.grasp(None)?;
+    let grasp = grasp(assembly, None)?;
     let hand = grasp.settings().hand.clone();
     let mut stage = Stage::new(&grasp);
     let failed = |what: String| PlayError::Pose { index: take.index, what };

@@ -9,7 +9,9 @@ use hwasp_mujoco::grasp::{Object, Stage, Still};
 use hwasp_tasks::hand::names;
 use hwasp_training::Assembly;
 
-use super::{Caption, Moment, Picture, PlayError, PlayOptions, Played, Row, Take, film, gif, label, moments, sheet};
+use super::{
+    Caption, Moment, Picture, PlayError, PlayOptions, Played, Row, Take, film, gif, grasp, label, moments, sheet,
+};
 
 /// Pictures a second, and what a step lasts, s.
 const RATE: usize = 20;
@@ -29,7 +31,7 @@ pub fn play(
     (title, out): (&str, &Path),
     told: &mut dyn FnMut(&Played),
 ) -> Result<PathBuf, PlayError> {
-    let grasp = assembly.grasp(None)?;
+    let grasp = grasp(assembly, None)?;
     let mut stage = Stage::new(&grasp);
     let camera = stage.simulation().camera(names::CAMERA)?;
     let mut painter = Painter::new(stage.simulation(), camera, options.size)?;

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use hwasp_core::{RolloutError, Serial};
-use hwasp_mujoco::grasp::{Film, Filmed, Object};
+use hwasp_mujoco::grasp::{Film, Filmed, Grasp, Object, settings_of};
 use hwasp_training::{Assembly, World, held_out, sampler};
 
-use super::{PlayError, PlayOptions};
+use super::{PlayError, PlayOptions, check};
 
 /// One episode on film.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,15 +23,29 @@ pub struct Take {
     pub film: Film,
 }
 
+/// The grasping task by itself, whose episodes can be looked at: that of evaluation, or with a `native` design (SI) that of
+/// [`Assembly::native`].
+pub(crate) fn grasp(assembly: &Assembly, native: Option<&[f64]>) -> Result<Grasp, PlayError> {
+    let settings = settings_of(check(assembly)?);
+    Ok(match native {
+        None => Grasp::new(settings)?,
+        Some(design) => Grasp::native(settings, &std::array::from_fn(|i| design[i]))?,
+    })
+}
+
 /// Runs and films the episodes of `options`, with the controller in `params` on the design in them: as built and by the law,
 /// or with the engine's own tendons.
 pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Result<Vec<Take>, PlayError> {
     let trained = assembly.policy.design(params);
-    let design = if options.native { trained } else { assembly.problem.training.law.as_built(&trained) };
-    let grasp = assembly.grasp(options.native.then_some(&design[..]))?;
+    let design = if options.native { trained } else { assembly.worlds.training.law.as_built(&trained) };
+    let grasp = grasp(assembly, options.native.then_some(&design[..]))?;
     let law = grasp.law();
     let filmed = Arc::new(Filmed::new(grasp));
-    let sampler = sampler(assembly, &World { law, make: filmed.clone() }, &design)?;
+    let sampler = sampler(
+        assembly,
+        &World::shared(law, filmed.clone()).with_horizon(assembly.experiment().task.horizon),
+        &design,
+    )?;
     let controller = assembly.policy.controller_params(params);
     // One at a time: the film is of the last episode. Neighbours change nothing in an episode.
     let take = |index| {

@@ -20,11 +20,14 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use hwasp_plot::PlotError;
+use hwasp_tasks::grasp::GraspTaskSettings;
 use hwasp_training::{AssembleError, Assembly};
 
 pub use canvas::Picture;
 #[cfg(feature = "renderer")]
 pub use draw::play;
+#[cfg(feature = "mujoco")]
+pub(crate) use film::grasp;
 #[cfg(feature = "mujoco")]
 pub use film::{Take, film};
 pub use label::{Caption, label};
@@ -66,14 +69,25 @@ pub struct Played {
 }
 
 /// Whether the experiment has episodes to look at: that it is about grasps.
-pub fn check(assembly: &Assembly) -> Result<(), AssembleError> {
-    assembly.grasp_problem().map(|_| ())
+pub fn check(assembly: &Assembly) -> Result<&GraspTaskSettings, PlayError> {
+    let task = &assembly.experiment().task;
+    task.settings().ok_or_else(|| PlayError::NoGrasp { problem: task.name().to_owned() })
 }
 
 /// Why there is nothing to look at.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PlayError {
+    /// A problem in which nothing is grasped.
+    #[error("{problem} has no grasps to look at; z-grasp and 3d-grasp have")]
+    NoGrasp {
+        /// The problem.
+        problem: String,
+    },
+    /// A grasping task that cannot be.
+    #[cfg(feature = "mujoco")]
+    #[error(transparent)]
+    Grasp(#[from] hwasp_mujoco::grasp::GraspError),
     /// The world of the episodes cannot be put together, or nothing is grasped in it.
     #[error(transparent)]
     Assemble(#[from] AssembleError),

@@ -1,7 +1,7 @@
 //! What was optimised.
 
+use hwasp_experiment::{Experiment, Method};
 use hwasp_runs::text::grouped;
-use hwasp_training::spec::{Algorithm, Method, Problem, Spec};
 use maud::{Markup, html};
 
 use crate::page::Section;
@@ -23,49 +23,14 @@ pub(crate) fn section(run: &Run) -> Section {
 }
 
 /// Body, purpose, and what of the body is open.
-pub(crate) fn problem(spec: &Spec) -> String {
-    match &spec.task.problem {
-        Problem::Stiffness(p) => format!(
-            "Two masses hang under {} parallel springs, and a motor pulls. The lower mass has to be brought to a height and held \
-             there with as little motor as possible. The stiffness of each spring is the design.",
-            p.base.segments
-        ),
-        Problem::BarLength(p) => format!(
-            "Two masses hang under a spring, a bar of {} segments between them, and a motor pulls. The lower mass has to be \
-             brought to a height and held there with as little motor as possible. The length of each segment is the design.",
-            p.base.segments
-        ),
-        Problem::Reach(_) => {
-            "A motor moves a point on a rail through a gear, and the point has to reach a goal. The ratio of the \
-             gear is the design."
-                .to_owned()
-        }
-        Problem::Pendulum => {
-            "A motor too weak to lift a pendulum in one go has to swing it up and hold it there. The ratio of \
-             the gear behind the motor is the design."
-                .to_owned()
-        }
-        Problem::Own(_) => format!("The problem is {}, which is not one that comes with hwasp.", spec.task.name()),
-        Problem::ZGrasp(_) | Problem::SpatialGrasp(_) => {
-            let motion = match &spec.task.problem {
-                Problem::ZGrasp(_) => "up and down",
-                _ => "in space",
-            };
-            format!(
-                "One motor winds three tendons, which close a thumb and two fingers of two links each against springs in the \
-                 joints; the palm moves {motion}. The hand has to come down to an object, grasp it and lift it. Pulley radius, \
-                 spring stiffness and spring preload at four kinds of joints are the design; the two fingers share theirs."
-            )
-        }
-    }
+pub(crate) fn problem(spec: &Experiment) -> String {
+    let about = &spec.task.built().words.about;
+    if about.is_empty() { format!("The problem is {}.", spec.task.name()) } else { about.clone() }
 }
 
 /// How learner, controller and hardware were composed.
-fn method(spec: &Spec) -> String {
-    let learner = match spec.learner.algorithm {
-        Algorithm::Ppo => "PPO",
-        Algorithm::Trpo => "TRPO",
-    };
+fn method(spec: &Experiment) -> String {
+    let learner = spec.learner.title();
     match spec.method {
         Method::Hwasp => format!(
             "The law of the mechanism is a part of the policy, and its parameters are trained with the controller's weights by \
@@ -91,7 +56,7 @@ fn method(spec: &Spec) -> String {
     }
 }
 
-fn controller(spec: &Spec) -> String {
+fn controller(spec: &Experiment) -> String {
     let layers: Vec<String> = spec.controller.hidden.iter().map(ToString::to_string).collect();
     let through = if layers.is_empty() {
         "without hidden layers".to_owned()

@@ -1,9 +1,9 @@
 //! Where it came from, and how to get it again.
 
+use hwasp_experiment::EXPERIMENT;
 use hwasp_runs::Provenance;
 use hwasp_runs::checkpoint::experiment_hash;
 use hwasp_runs::text::grouped;
-use hwasp_training::spec::EXPERIMENT;
 use maud::{Markup, html};
 
 use crate::page::Section;

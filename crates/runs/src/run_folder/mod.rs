@@ -7,5 +7,5 @@ mod table;
 mod writer;
 
 pub use self::provenance::Provenance;
-pub use self::saved::{SavedRun, saved_json, saved_metrics, saved_provenance, saved_spec, saved_summary};
+pub use self::saved::{SavedRun, saved_experiment, saved_json, saved_metrics, saved_provenance, saved_summary};
 pub use self::writer::{Extras, Keeping, Resumed, RunFolder, no_extras};

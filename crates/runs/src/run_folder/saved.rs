@@ -5,7 +5,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use hwasp_training::spec::{self, EXPERIMENT, Layers, Spec};
+use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
 use hwasp_training::{Assembly, params_at};
 use serde::de::DeserializeOwned;
 
@@ -27,14 +27,14 @@ pub struct SavedRun {
 
 impl SavedRun {
     /// Opens a run folder and puts its experiment together again.
-    pub fn open(path: &Path) -> Result<Self, RunError> {
-        Self::open_with(path, &[])
+    pub fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
+        Self::open_with(path, &[], catalogue)
     }
 
     /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
-    pub fn open_with(path: &Path, assignments: &[String]) -> Result<Self, RunError> {
-        let spec = saved_spec(path, assignments)?;
-        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&spec)? })
+    pub fn open_with(path: &Path, assignments: &[String], catalogue: &Catalogue) -> Result<Self, RunError> {
+        let experiment = saved_experiment(path, assignments, catalogue)?;
+        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&experiment)? })
     }
 
     /// Its experiment, ready to run.
@@ -53,7 +53,7 @@ impl SavedRun {
     }
 
     fn params_so_far(&self) -> Result<Vec<f32>, RunError> {
-        let experiment = self.assembly.spec().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+        let experiment = self.assembly.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
         let store = CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment));
         let found = store.newest()?;
         found.warn();
@@ -77,16 +77,16 @@ impl SavedRun {
 }
 
 /// The experiment of a run folder, with values of it set anew (`key=value`).
-pub fn saved_spec(path: &Path, assignments: &[String]) -> Result<Spec, RunError> {
+pub fn saved_experiment(path: &Path, assignments: &[String], catalogue: &Catalogue) -> Result<Experiment, RunError> {
     let file = path.join(EXPERIMENT);
     if !file.is_file() {
         return Err(RunError::NotARun { path: path.to_owned(), file: EXPERIMENT });
     }
-    let text = read_limited(&file, spec::LONGEST_FILE as u64)?;
+    let text = read_limited(&file, LONGEST_FILE as u64)?;
     let text = String::from_utf8_lossy(&text);
     let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
     let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
-    Ok(spec::resolve(layers, None)?)
+    Ok(resolve(layers, None, catalogue)?)
 }
 
 /// The figures of a run folder.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use hwasp_training::spec::{EXPERIMENT, Spec};
+use hwasp_experiment::{EXPERIMENT, Experiment};
 use hwasp_training::{Assembly, Checkpoint, Event, Fault, Observer, ObserverError, Trained};
 
 use super::lock::{LOCK, RunLock};
@@ -90,7 +90,7 @@ impl From<RunFolder> for Resumed {
 
 impl RunFolder {
     /// Creates the folder and writes what is known before training. A folder that exists is not touched.
-    pub fn create(path: &Path, spec: &Spec, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
+    pub fn create(path: &Path, spec: &Experiment, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         if let Some(parent) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
             fs::create_dir_all(parent).map_err(|source| io_error("create", path, told(parent, source)))?;
         }
@@ -113,7 +113,12 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Finished`] where nothing is left to do; [`RunError::Checkpoint`] where its checkpoints are of another
     /// experiment or of a newer program, or none of them is sound. Nothing has changed then.
-    pub fn resume(path: &Path, spec: &Spec, provenance: Provenance, keeping: Keeping) -> Result<Resumed, RunError> {
+    pub fn resume(
+        path: &Path,
+        spec: &Experiment,
+        provenance: Provenance,
+        keeping: Keeping,
+    ) -> Result<Resumed, RunError> {
         if path.join(SUMMARY).is_file() {
             return Err(RunError::Finished { path: path.to_owned() });
         }
@@ -134,7 +139,7 @@ impl RunFolder {
         Ok(Resumed { folder, found })
     }
 
-    fn new(path: &Path, spec: &Spec, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
+    fn new(path: &Path, spec: &Experiment, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         let lock = RunLock::take(path)?;
         let experiment = spec.to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
         let about = "# The experiment as it was run, every setting resolved. `hwasp train` on this file repeats it, if it began afresh.\n";
@@ -157,7 +162,7 @@ impl RunFolder {
     }
 
     /// The first free name for a run of `spec` under `root`: `mass-spring-hwasp-seed0`, then `…-2` and so on.
-    pub fn free_name(root: &Path, spec: &Spec) -> PathBuf {
+    pub fn free_name(root: &Path, spec: &Experiment) -> PathBuf {
         let name = format!("{}-{}-seed{}", spec.name.replace(['/', '\\'], "-"), spec.method.name(), spec.seed);
         let numbered = (2..).map(|n| root.join(format!("{name}-{n}")));
         let mut names = std::iter::once(root.join(&name)).chain(numbered);
@@ -199,7 +204,7 @@ impl RunFolder {
         let about = "# The design in SI units. `as_built` is what to build; it differs from `values` only where the law softens an\n\
                      # interface that is rigid in reality.\n\n";
         self.write(DESIGN, format!("{about}{design}").as_bytes())?;
-        let saved = SavedRun::open(&self.path)?;
+        let saved = SavedRun::open(&self.path, assembly.experiment().catalogue())?;
         for (name, contents) in extras(&saved).map_err(of_extra)? {
             self.write(&name, &contents)?;
         }

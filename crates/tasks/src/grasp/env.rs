@@ -1,7 +1,6 @@
 //! What grasping environments are from outside.
 
 use hwasp_core::{CommandPort, Dimension, EnvSpec, Port};
-use hwasp_settings::Choice;
 
 use super::ShapeKind;
 use crate::hand::{HandDescription, PalmMotion, names};
@@ -18,8 +17,12 @@ pub fn env_spec(hand: &HandDescription, palm: PalmMotion, palm_step: f64, horizo
     let mut effort: Vec<Port> =
         names::JOINTS.iter().map(|joint| port(&format!("{joint}_torque"), Dimension::Torque)).collect();
     effort.push(port("motor_torque", Dimension::Torque));
-    let motor =
-        |name: &str, most: f64| CommandPort { name: name.to_owned(), dimension: Dimension::Length, lo: -most, hi: most };
+    let motor = |name: &str, most: f64| CommandPort {
+        name: name.to_owned(),
+        dimension: Dimension::Length,
+        lo: -most,
+        hi: most,
+    };
     let mut command: Vec<CommandPort> = palm.commands().iter().map(|name| motor(name, palm_step)).collect();
     command.push(motor("motor", hand.transmission.step_limit));
     let mut context = vec![port("mass", Dimension::Mass), port("friction", Dimension::None)];

@@ -26,7 +26,7 @@ pub enum Scene {
 }
 
 /// Makes environments in an engine.
-pub type Engine = fn(&GraspTaskSettings, PalmMotion, Scene) -> Result<Arc<dyn MakeEnvironment>, AnyError>;
+pub type Engine = fn(&GraspTaskSettings, Scene) -> Result<Arc<dyn MakeEnvironment>, AnyError>;
 
 /// `z-grasp` or `3d-grasp`: the hand's transmission is the design. Without an engine it can be read, drawn and exported, and
 /// says of its worlds that they need one.
@@ -52,12 +52,14 @@ impl GraspProblem {
 fn world(problem: GraspProblem, law: &Law, task: &GraspTaskSettings, scene: Scene) -> World {
     let name = Problem::name(&problem).to_owned();
     let (task, env) = (task.clone(), env_spec(&task.hand(), problem.palm, PALM_STEP, HORIZON));
-    World::later(law.clone(), env, move || match problem.engine {
-        Some(engine) => engine(&task, problem.palm, scene),
+    World::later(law.clone(), env, move || {
+        match problem.engine {
+        Some(engine) => engine(&task, scene),
         None => Err(format!(
             "{name} needs the MuJoCo engine, and this program was built without it: build it with the feature \"mujoco\""
         )
         .into()),
+    }
     })
 }
 
@@ -72,7 +74,7 @@ impl Problem for GraspProblem {
     }
 
     fn defaults(&self) -> GraspTaskSettings {
-        GraspTaskSettings::within(if self.palm == PalmMotion::Spatial { 0.05 } else { 0.0 })
+        GraspTaskSettings::new(self.palm)
     }
 
     fn build(&self, task: &GraspTaskSettings) -> Result<Built, AnyError> {

@@ -3,7 +3,7 @@
 use hwasp_core::Dimension;
 use hwasp_settings::{Fields, Item, Settings, choice};
 
-use crate::hand::{HandDescription, HandRange};
+use crate::hand::{HandDescription, HandRange, PalmMotion};
 
 /// The most shapes of a list, in which one may stand several times.
 const MOST_SHAPES: usize = 100;
@@ -70,6 +70,8 @@ pub enum Inertia {
 /// The defaults are the paper's (section 6, appendix B).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GraspTaskSettings {
+    /// How the palm may move: the problem's, and nothing to be set.
+    pub palm: PalmMotion,
     /// Limits of the design.
     pub range: HandRangeKind,
     /// The most the three tendons pull together, N.
@@ -119,9 +121,10 @@ pub struct GraspTaskSettings {
 }
 
 impl GraspTaskSettings {
-    /// The defaults of objects that lie anywhere within ± `offset`, m, beneath the palm.
-    pub(super) fn within(offset: f64) -> Self {
+    /// The defaults of a problem.
+    pub(super) fn new(palm: PalmMotion) -> Self {
         Self {
+            palm,
             range: HandRangeKind::Large,
             tension_limit: 75.0,
             shapes: ShapeKind::EACH.to_vec(),
@@ -132,7 +135,7 @@ impl GraspTaskSettings {
             friction: [0.5, 1.0],
             inertia: Inertia::Independent([1e-4, 5e-3]),
             height: [0.150, 0.250],
-            offset,
+            offset: if palm == PalmMotion::Spatial { 0.05 } else { 0.0 },
             offset_initial: None,
             offset_growth: [0.1, 0.6],
             yaw: 0.0,
@@ -162,7 +165,12 @@ impl Settings for GraspTaskSettings {
         fields.choice("range", &mut self.range, "limits of the twelve parameters");
         let about = "the most the three tendons pull together; 163 N is the easy variant";
         fields.quantity("tension_limit", &mut self.tension_limit, Dimension::Force, 1.0..=1000.0, about);
-        fields.choices("shapes", &mut self.shapes, MOST_SHAPES, "of objects; one that stands there twice is drawn twice as often");
+        fields.choices(
+            "shapes",
+            &mut self.shapes,
+            MOST_SHAPES,
+            "of objects; one that stands there twice is drawn twice as often",
+        );
         fields.span("size", &mut self.size, length, 0.01..=0.2, "edges of the object's bounding box");
         fields.span("mass", &mut self.mass, Dimension::Mass, 1e-3..=10.0, "of the object");
         let about = "objects are heavier by it in training than those of evaluations";

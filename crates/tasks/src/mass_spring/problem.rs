@@ -279,7 +279,10 @@ impl Problem for BarLength {
             Preset { name: "bar-length", text: include_str!("../../../../experiments/bar-length.toml") },
             Preset { name: "bar-length-50", text: include_str!("../../../../experiments/bar-length-50.toml") },
             Preset { name: "paper/bar-length", text: include_str!("../../../../experiments/paper/bar-length.toml") },
-            Preset { name: "paper/bar-length-50", text: include_str!("../../../../experiments/paper/bar-length-50.toml") },
+            Preset {
+                name: "paper/bar-length-50",
+                text: include_str!("../../../../experiments/paper/bar-length-50.toml"),
+            },
         ]
     }
 }

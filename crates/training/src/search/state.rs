@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use hwasp_algos::{Archive, Exchange, Persist, Search, StateError, StateFilter};
 use hwasp_core::Serial;
 
-use super::Problem;
+use super::Candidates;
 use crate::checkpoint::Checkpoint;
 use crate::error::TrainError;
 use crate::learned::{Clock, Learned, Loop};
@@ -160,7 +160,7 @@ impl Persist for Scored {
 
 /// The candidates of one generation.
 pub(super) struct Generation<'a> {
-    pub(super) problem: &'a Problem<'a>,
+    pub(super) problem: &'a Candidates<'a>,
     pub(super) candidates: &'a [Vec<f64>],
 }
 
@@ -171,7 +171,7 @@ impl Generation<'_> {
         let generation = state.search.generation();
         let groups: Vec<u64> = (0..self.candidates.len()).map(|i| state.search.group(i)).collect();
         let filter = state.filter.clone();
-        let spec = self.problem.assembly.spec();
+        let spec = self.problem.assembly.experiment();
         let (stop, clock) = (run.stop, run.clock);
         let desk = Mutex::new(Desk { state, observer: &mut *run.observer, clock });
         let done = run.executor.map(self.candidates.len(), |i| {

@@ -8,12 +8,12 @@ mod hand;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use hwasp_experiment::{Catalogue, Experiment, Group};
 use hwasp_plot::{Plot, write_plot};
 use hwasp_runs::files::read_limited;
-use hwasp_runs::{DESIGN, DesignGroupSummary, LARGEST_SUMMARY, RunError, io_error, saved_spec};
-use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_runs::{DESIGN, DesignGroupSummary, LARGEST_SUMMARY, RunError, io_error, saved_experiment};
 pub use hwasp_tasks::hand::{ClosingPoint, FreeClosing, PinchBand, PinchTension};
-use hwasp_training::spec::{GroupSpec, Problem, Spec};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 use serde::Serialize;
 
 pub use self::hand::{DigitPair, HandReport, JointReport, PinchReport};
@@ -51,8 +51,8 @@ pub struct DesignReport {
 
 impl DesignReport {
     /// Reads the design in a run folder. The files are taken for hostile: what is computed of them is checked first.
-    pub fn open(path: &Path) -> Result<Self, RunError> {
-        let spec = saved_spec(path, &[])?;
+    pub fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
+        let spec = saved_experiment(path, &[], catalogue)?;
         let file = path.join(DESIGN);
         if !file.is_file() {
             return Err(RunError::Unfinished { path: path.to_owned(), file: DESIGN });
@@ -64,10 +64,10 @@ impl DesignReport {
     }
 
     /// The design of an experiment, by the names of its groups; the error says what is wrong with it.
-    fn new(spec: &Spec, mut design: BTreeMap<String, DesignGroupSummary>) -> Result<Self, String> {
+    fn new(spec: &Experiment, mut design: BTreeMap<String, DesignGroupSummary>) -> Result<Self, String> {
         let mut groups = Vec::new();
         for wanted in spec.task.groups() {
-            let name = wanted.name.to_owned();
+            let name = wanted.name.clone();
             let group = design.remove(&name).ok_or_else(|| format!("{name} is missing"))?;
             check(&group, &wanted).map_err(|what| format!("{name}: {what}"))?;
             let position = group.values.iter().map(|value| (value - wanted.lo) / (wanted.hi - wanted.lo)).collect();
@@ -76,13 +76,13 @@ impl DesignReport {
         if let Some(name) = design.keys().next() {
             return Err(format!("{name:?} is no group of {}", spec.task.name()));
         }
-        let hand = match &spec.task.problem {
-            Problem::ZGrasp(p) | Problem::SpatialGrasp(p) => {
+        let hand = match hand_of(spec) {
+            Some(hand) => {
                 // Twelve groups of one; the law builds what it trains.
                 let design: [f64; DESIGN_LEN] = std::array::from_fn(|i| groups[i].group.values[0]);
-                Some(HandReport::new(&p.hand(), &design).map_err(|e| e.to_string())?)
+                Some(HandReport::new(hand, &design).map_err(|e| e.to_string())?)
             }
-            _ => None,
+            None => None,
         };
         Ok(Self {
             experiment: spec.name.clone(),
@@ -95,9 +95,14 @@ impl DesignReport {
     }
 }
 
+/// The hand that an experiment is about, if it is about one: everything about it that is not designed.
+pub fn hand_of(experiment: &Experiment) -> Option<&HandDescription> {
+    experiment.task.built().mechanism.as_ref()?.as_any().downcast_ref()
+}
+
 /// Whether a group is what the experiment can have given.
-fn check(group: &DesignGroupSummary, wanted: &GroupSpec) -> Result<(), String> {
-    let (&GroupSpec { count, lo, hi, .. }, unit) = (wanted, wanted.dimension.si());
+fn check(group: &DesignGroupSummary, wanted: &Group) -> Result<(), String> {
+    let (&Group { count, lo, hi, .. }, unit) = (wanted, wanted.dimension.si());
     if group.unit != unit {
         return Err(format!("the unit is {:?}, and the experiment has {unit:?}", group.unit));
     }

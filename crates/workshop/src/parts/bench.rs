@@ -1,7 +1,7 @@
 //! What the workshop has: axle, line, room at a joint, and how finely parts can be made.
 
 use hwasp_core::{Dimension, parse_quantity, unit};
-use hwasp_training::spec::nearest;
+use hwasp_settings::nearest;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

@@ -8,7 +8,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use hwasp_training::spec::{nearest, shorten};
+use hwasp_settings::nearest;
+use hwasp_settings::text::shorten;
 use thiserror::Error;
 
 use super::spring::{MUSIC_WIRE_MODULUS, TorsionSpring, music_wire_strength};
@@ -62,7 +63,7 @@ pub struct CatalogueSpring {
 
 /// Springs that can be had.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Catalogue {
+pub struct SpringCatalogue {
     /// Where it comes from: a file's name, or `built in`.
     pub name: String,
     /// The springs, in the order of the rows, at least one.
@@ -71,7 +72,7 @@ pub struct Catalogue {
 
 /// Why a catalogue is of no use.
 #[derive(Debug, Error)]
-pub enum CatalogueError {
+pub enum SpringCatalogueError {
     /// The file.
     #[error("cannot read the catalogue {path}: {source}\n  = hint: name a CSV file that may be read")]
     Read {
@@ -113,17 +114,17 @@ fn told(name: &str, faults: &[CatalogueFault]) -> String {
     format!("the catalogue {name} is wrong:{lines}{rest}\n  = hint: docs/parts.md has the columns and their limits")
 }
 
-impl Catalogue {
+impl SpringCatalogue {
     /// The catalogue that comes with the program.
     ///
     /// # Errors
     /// Never, which a test checks.
-    pub fn built_in() -> Result<Self, CatalogueError> {
+    pub fn built_in() -> Result<Self, SpringCatalogueError> {
         Self::parse("built in", BUILT_IN.as_bytes())
     }
 
     /// Reads a file, which is taken for hostile.
-    pub fn open(path: &Path) -> Result<Self, CatalogueError> {
+    pub fn open(path: &Path) -> Result<Self, SpringCatalogueError> {
         let name = path.display().to_string();
         let mut bytes = Vec::new();
         let read = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
@@ -131,13 +132,13 @@ impl Catalogue {
             let large = || io::Error::new(io::ErrorKind::FileTooLarge, format!("it is larger than {LARGEST} bytes"));
             if bytes.len() as u64 > LARGEST { Err(large()) } else { Ok(()) }
         });
-        read.map_err(|source| CatalogueError::Read { path: name.clone(), source })?;
+        read.map_err(|source| SpringCatalogueError::Read { path: name.clone(), source })?;
         Self::parse(&name, &bytes)
     }
 
     /// Reads the text of a catalogue, a header with the columns' names first; `name`: what errors call it. All wrong rows are
     /// told at once.
-    pub fn parse(name: &str, text: &[u8]) -> Result<Self, CatalogueError> {
+    pub fn parse(name: &str, text: &[u8]) -> Result<Self, SpringCatalogueError> {
         let mut springs = Vec::new();
         let mut faults = Vec::new();
         read(text, &mut springs, &mut faults);
@@ -147,7 +148,7 @@ impl Catalogue {
         if faults.is_empty() {
             return Ok(Self { name: name.to_owned(), springs });
         }
-        Err(CatalogueError::Faults { name: name.to_owned(), faults })
+        Err(SpringCatalogueError::Faults { name: name.to_owned(), faults })
     }
 }
 

@@ -14,6 +14,7 @@ mod tune;
 
 use std::path::Path;
 
+use crate::design::hand_of;
 use hwasp_core::Executor;
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{RunError, encode, io_error};
@@ -22,7 +23,7 @@ use hwasp_training::{AssembleError, Assembly, EvaluateError, Reference, TrainErr
 use thiserror::Error;
 
 pub use bench::{Bench, BenchError};
-pub use catalogue::{BUILT_IN, Catalogue, CatalogueError, CatalogueFault, CatalogueSpring};
+pub use catalogue::{BUILT_IN, CatalogueFault, CatalogueSpring, SpringCatalogue, SpringCatalogueError};
 pub use list::{
     CatalogueNote, JointDesign, JointParts, PartsList, PartsWorth, PulleyPart, SnappedParameter, SpringPart, TunedWorth,
 };
@@ -47,7 +48,7 @@ pub enum PartsError {
     )]
     NoHand {
         /// The problem.
-        problem: &'static str,
+        problem: String,
     },
     /// No parts will do.
     #[error(transparent)]
@@ -87,7 +88,12 @@ pub struct Snapped {
 }
 
 /// Chooses the parts that come nearest to the design in `params`.
-pub fn snap(assembly: &Assembly, params: &[f32], catalogue: &Catalogue, bench: &Bench) -> Result<Snapped, PartsError> {
+pub fn snap(
+    assembly: &Assembly,
+    params: &[f32],
+    catalogue: &SpringCatalogue,
+    bench: &Bench,
+) -> Result<Snapped, PartsError> {
     let hand = hand(assembly)?;
     let space = assembly.policy.space();
     let design = assembly.built(params);
@@ -103,8 +109,9 @@ pub fn snap(assembly: &Assembly, params: &[f32], catalogue: &Catalogue, bench: &
 }
 
 fn hand(assembly: &Assembly) -> Result<HandDescription, PartsError> {
-    let problem = assembly.spec().task.name();
-    Ok(assembly.grasp_problem().map_err(|_| PartsError::NoHand { problem })?.hand())
+    let experiment = assembly.experiment();
+    let none = || PartsError::NoHand { problem: experiment.task.name().to_owned() };
+    hand_of(experiment).cloned().ok_or_else(none)
 }
 
 /// The trained controller on the trained design and on its parts, and what comes later on the same episodes.
@@ -131,7 +138,7 @@ impl Snapped {
 
     /// The list.
     pub fn list(self, assembly: &Assembly, worth: PartsWorth) -> PartsList {
-        let (spec, space) = (assembly.spec(), assembly.policy.space());
+        let (spec, space) = (assembly.experiment(), assembly.policy.space());
         let parameter = |(i, name): (usize, String)| SnappedParameter {
             name,
             unit: space.groups()[i].dimension.si().to_owned(),

@@ -7,7 +7,7 @@ use hwasp_tasks::hand::names::{KIND_OF_JOINT, KINDS};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 use thiserror::Error;
 
-use super::{Bench, Catalogue, CatalogueSpring, JointDesign, JointParts, PulleyPart, SpringPart, TorsionSpring};
+use super::{Bench, CatalogueSpring, JointDesign, JointParts, PulleyPart, SpringCatalogue, SpringPart, TorsionSpring};
 
 /// Limits of every design parameter, SI.
 pub(super) type Limits = [(f64, f64); DESIGN_LEN];
@@ -112,7 +112,7 @@ pub fn select(
     hand: &HandDescription,
     design: &[f64; DESIGN_LEN],
     limits: &Limits,
-    catalogue: &Catalogue,
+    catalogue: &SpringCatalogue,
     bench: &Bench,
 ) -> Result<Vec<JointParts>, SelectError> {
     (0..KINDS.len())
@@ -146,7 +146,7 @@ fn inside(value: f64, (lo, hi): (f64, f64)) -> bool {
 }
 
 impl Joint {
-    fn parts(&self, catalogue: &Catalogue, bench: &Bench) -> Result<JointParts, SelectError> {
+    fn parts(&self, catalogue: &SpringCatalogue, bench: &Bench) -> Result<JointParts, SelectError> {
         let pulley = self.pulley(bench)?;
         let (entry, hole, springs) = self.springs(catalogue, bench)?;
         let built = JointDesign { radius: pulley.groove_radius + 0.5 * pulley.line, ..springs };
@@ -185,7 +185,7 @@ impl Joint {
     /// The spring and the hole whose torque is off least; the radius of what is returned is the trained one.
     fn springs<'c>(
         &self,
-        catalogue: &'c Catalogue,
+        catalogue: &'c SpringCatalogue,
         bench: &Bench,
     ) -> Result<(&'c CatalogueSpring, u32, JointDesign), SelectError> {
         let mut best: Option<(f64, (&CatalogueSpring, u32, JointDesign))> = None;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use hwasp_core::Policy;
-use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, saved_spec};
+use hwasp_experiment::{EXPERIMENT, Experiment, InitialDesign, Method, Place};
+use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, saved_experiment};
 use hwasp_tasks::hand::DESIGN_LEN;
-use hwasp_training::spec::{EXPERIMENT, InitialSpec, Method, PerCommand, Place, Problem, Spec};
 use hwasp_training::{Assembly, Checkpoint, beginning};
 
 use super::PartsError;
@@ -35,7 +35,7 @@ impl Tuning {
         env_steps: u64,
         asked: (u64, u64),
     ) -> Result<Self, PartsError> {
-        let rows = run.spec().train.rows() as u64;
+        let rows = run.experiment().train.rows() as u64;
         if env_steps < rows {
             return Err(PartsError::ShortTuning { env_steps, rows });
         }
@@ -50,13 +50,13 @@ impl Tuning {
 
     /// Its folder: taken up where the same training is there already.
     pub fn folder(&self, path: &Path, provenance: Provenance) -> Result<TuningFolder, RunError> {
-        let spec = self.assembly.spec();
+        let spec = self.assembly.experiment();
         let (mut folder, from) = if path.join(EXPERIMENT).is_file() {
-            if saved_spec(path, &[])? != *spec {
+            if saved_experiment(path, &[], spec.catalogue())? != *spec {
                 return Err(RunError::Exists { path: path.to_owned() });
             }
             if path.join(SUMMARY).is_file() {
-                return Ok(TuningFolder::Finished(SavedRun::open(path)?.params()?));
+                return Ok(TuningFolder::Finished(SavedRun::open(path, spec.catalogue())?.params()?));
             }
             let Resumed { folder, found } = RunFolder::resume(path, spec, provenance, Keeping::default())?;
             found.warn();
@@ -77,8 +77,8 @@ fn experiment(
     built: &[f64; DESIGN_LEN],
     env_steps: u64,
     (episodes, seed): (u64, u64),
-) -> Spec {
-    let mut spec = run.spec().clone();
+) -> Experiment {
+    let mut spec = run.experiment().clone();
     spec.description = format!(
         "The controller of {} ({}, seed {}) trained further on parts.",
         spec.name,
@@ -86,14 +86,13 @@ fn experiment(
         spec.seed
     );
     spec.method = Method::Fixed;
-    spec.design.initial = InitialSpec::at(&spec.task.groups(), built);
+    spec.design.initial = InitialDesign::at(&spec.task.groups(), built);
     spec.design.placement = Place::Fixed;
     spec.design.placements.clear();
-    spec.noise.command = PerCommand(last_noise(run, params));
+    spec.noise.command = last_noise(run, params);
     (spec.noise.command_final, spec.noise.effort, spec.noise.effort_final) = (None, None, None);
-    if let Problem::ZGrasp(task) | Problem::SpatialGrasp(task) = &mut spec.task.problem {
-        (task.safety_growth, task.offset_initial) = ([0.0; 2], None);
-    }
+    // Schedules of task, noise and learning rate do not begin again.
+    spec.train.progress_start = 1.0;
     spec.train.env_steps = env_steps;
     (spec.train.evaluation_episodes, spec.train.evaluation_seed) = (episodes as usize, seed);
     spec
@@ -103,8 +102,7 @@ fn experiment(
 fn last_noise(run: &Assembly, params: &[f32]) -> Vec<f64> {
     let mut log_std = vec![0.0; run.policy.action_dim()];
     run.policy.log_std(params, 1.0, &mut log_std);
-    let environment = run.problem.training.make.make(None);
-    let commands = &environment.spec().command;
+    let commands = &run.worlds.training.env.command;
     // The commands are the last components of an action.
     let last = log_std[log_std.len() - commands.len()..].iter().zip(commands);
     last.map(|(log_std, port)| (f64::from(*log_std).exp() / (port.hi - port.lo)).clamp(1e-6, 10.0)).collect()

@@ -1,7 +1,7 @@
 //! How far off each design parameter may be made.
 
 use hwasp_core::{DesignSpace, Dimension, parse_quantity};
-use hwasp_training::spec::nearest;
+use hwasp_settings::nearest;
 use thiserror::Error;
 
 /// The error of a parameter that nothing is said of.

@@ -27,7 +27,7 @@ pub fn errors_of(
     params: &[f32],
     given: &[String],
 ) -> Result<Vec<ManufacturingError>, ManufacturingErrorFault> {
-    let is_hand = assembly.grasp_problem().is_ok();
+    let is_hand = crate::design::hand_of(assembly.experiment()).is_some();
     manufacturing_errors(assembly.policy.space(), &assembly.built(params), is_hand, given)
 }
 
@@ -43,7 +43,7 @@ pub fn tolerances(
     executor: &dyn Executor,
     watch: &mut dyn FnMut(usize, usize),
 ) -> Result<Sensitivities, EvaluateError> {
-    let (spec, space) = (assembly.spec(), assembly.policy.space());
+    let (spec, space) = (assembly.experiment(), assembly.policy.space());
     let built = assembly.built(params);
     let (mut done, all) = (0, 1 + 2 * built.len());
     let mut tell = || {

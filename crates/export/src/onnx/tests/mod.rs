@@ -121,7 +121,6 @@ fn networks_of_every_kind() {
     agree("mass-spring", "hwasp", &[("controller.hidden", "[7, 5, 3]"), ("controller.squash", "true")]);
 }
 
-#[cfg(feature = "mujoco")]
 #[test]
 fn hands() {
     for experiment in ["z-grasp", "3d-grasp"] {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use hwasp_algos::{
-    BaselineConfig, FisherRows, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Shown, Trpo,
+    BaselineConfig, FisherRows, InputDims, Learner, MlpBaseline, MlpBaselineConfig, Ppo, PpoConfig, PpoSettings, Trpo,
     TrpoConfig, TrpoSettings, advantages,
 };
 use hwasp_core::Serial;
@@ -55,7 +55,7 @@ fn iteration(c: &mut Criterion) {
     group.throughput(Throughput::Elements(full.rows() as u64)).sample_size(30);
     group.bench_function("rollout", |b| b.iter(|| batch(&problem, &policy, 20, 200)));
     group.bench_function("update", |b| b.iter(|| ppo.update(&Serial, &full, 0.0, 0).expect("finite")));
-    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), Shown { obs: 2, state: 4, context: 0 }, 1);
+    let mut value = MlpBaseline::new(MlpBaselineConfig::default(), InputDims { obs: 2, state: 4, context: 0 }, 1);
     let targets: Vec<f32> = full.obs.iter().step_by(2).copied().collect();
     group.bench_function("fit of the value network", |b| b.iter(|| value.fit(&full, &targets, 0.0, 0)));
 }

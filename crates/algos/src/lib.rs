@@ -19,7 +19,7 @@ mod trpo;
 
 pub use adam::{Adam, AdamConfig};
 pub use archive::{Archive, Array, Element, Exchange, Persist, StateError};
-pub use baseline::{Baseline, BaselineConfig, LinearBaseline, MlpBaseline, MlpBaselineConfig, Shown};
+pub use baseline::{Baseline, BaselineConfig, InputDims, LinearBaseline, MlpBaseline, MlpBaselineConfig};
 pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner};
 pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKind};

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use self::optimiser::Optimiser;
 use crate::archive::{Exchange, Persist, StateError};
-use crate::baseline::{Baseline, BaselineConfig, Shown};
+use crate::baseline::{Baseline, BaselineConfig, InputDims};
 use crate::gae::AdvantageConfig;
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
@@ -129,7 +129,7 @@ pub struct Ppo<P: Policy> {
 impl<P: Policy> Ppo<P> {
     /// Starts from `params`. `seed` names the streams of minibatches and of the baseline.
     pub fn new(settings: &PpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
-        let baseline = Baseline::new(&settings.baseline, Shown::to(&*policy), seed);
+        let baseline = Baseline::new(&settings.baseline, InputDims::of(&*policy), seed);
         Self { optimiser: Optimiser::new(settings.ppo.clone(), policy, params, seed), baseline }
     }
 }

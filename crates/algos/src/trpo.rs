@@ -19,7 +19,7 @@ use self::fisher::Fisher;
 use self::line_search::backtrack;
 use self::passes::Passes;
 use crate::archive::{Exchange, Persist, StateError};
-use crate::baseline::{Baseline, Shown};
+use crate::baseline::{Baseline, InputDims};
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
 use crate::minibatch::Minibatch;
@@ -71,7 +71,7 @@ struct TrustRegion<P: Policy> {
 impl<P: Policy> Trpo<P> {
     /// Starts from `params`. `seed` names the streams of the curvature's rows and of the baseline.
     pub fn new(settings: &TrpoSettings, policy: Arc<P>, params: Vec<f32>, seed: u64) -> Self {
-        let baseline = Baseline::new(&settings.baseline, Shown::to(&*policy), seed);
+        let baseline = Baseline::new(&settings.baseline, InputDims::of(&*policy), seed);
         Self { region: TrustRegion::new(settings.trpo.clone(), policy, params, seed), baseline }
     }
 }

@@ -37,7 +37,7 @@ pub fn check_env(make: &dyn MakeEnvironment, law: &Law, fixed_start: bool) -> Re
 }
 
 fn check_spec(spec: &EnvSpec) -> Result<(), EnvFault> {
-    for (kind, names) in names(spec) {
+    for (kind, names) in port_names(spec) {
         if names.is_empty() && kind != "effort" && kind != "state" {
             return Err(EnvFault::NoPort { kind });
         }
@@ -62,7 +62,7 @@ fn check_spec(spec: &EnvSpec) -> Result<(), EnvFault> {
     if time_step.is_finite() && time_step > 0.0 { Ok(()) } else { Err(EnvFault::TimeStep { time_step }) }
 }
 
-fn names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {
+fn port_names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {
     let of = |ports: &[crate::Port]| ports.iter().map(|p| p.name.clone()).collect();
     [
         ("observation", of(&spec.observation)),
@@ -74,7 +74,7 @@ fn names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {
 
 fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
     let ports = law.ports();
-    for (kind, environment) in names(spec) {
+    for (kind, environment) in port_names(spec) {
         let law = match kind {
             "state" => &ports.state,
             "effort" => &ports.effort,
@@ -90,14 +90,14 @@ fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
 
 /// What can be seen of one moment; at the start the reward is 0 and the end is none.
 #[derive(Clone, Debug)]
-struct Moment {
+struct Snapshot {
     parts: [(&'static str, Vec<f64>); 5],
     end: Option<End>,
 }
 
-impl Moment {
+impl Snapshot {
     /// Looks at the environment; the lists are filled with NaN before, so that what is not written is found.
-    fn look(env: &dyn Environment, step: usize, reward: f64, end: Option<End>) -> Result<Self, EnvFault> {
+    fn take(env: &dyn Environment, step: usize, reward: f64, end: Option<End>) -> Result<Self, EnvFault> {
         let mut observation = vec![f64::NAN; env.spec().observation.len()];
         let mut state = vec![f64::NAN; env.spec().state.len()];
         let mut context = vec![f64::NAN; env.spec().context.len()];
@@ -117,17 +117,17 @@ impl Moment {
             ("reward", vec![reward]),
             ("end", vec![code]),
         ];
-        let moment = Self { parts, end };
-        for (kind, values) in &moment.parts {
+        let snapshot = Self { parts, end };
+        for (kind, values) in &snapshot.parts {
             if let Some(index) = values.iter().position(|v| !v.is_finite()) {
                 return Err(EnvFault::NotFinite { kind, index, value: values[index], step });
             }
         }
-        Ok(moment)
+        Ok(snapshot)
     }
 
     /// Bit by bit: -0 is not 0 here.
-    fn same(&self, other: &Self, cause: &'static str, step: usize) -> Result<(), EnvFault> {
+    fn check_same(&self, other: &Self, cause: &'static str, step: usize) -> Result<(), EnvFault> {
         for ((kind, first), (_, second)) in self.parts.iter().zip(&other.parts) {
             for (index, (&first, &second)) in first.iter().zip(second).enumerate() {
                 if first.to_bits() != second.to_bits() {
@@ -148,9 +148,9 @@ struct Check<'a> {
 
 impl Check<'_> {
     /// Resets to the start of this episode's stream.
-    fn reset(env: &mut dyn Environment, episode: u64) -> Result<Moment, EnvFault> {
+    fn reset(env: &mut dyn Environment, episode: u64) -> Result<Snapshot, EnvFault> {
         env.reset(&mut stream(0, Purpose::Check, 0, episode));
-        Moment::look(env, 0, 0.0, None)
+        Snapshot::take(env, 0, 0.0, None)
     }
 
     /// A design and commands for this episode, each even between its limits.
@@ -171,26 +171,26 @@ impl Check<'_> {
         design: &[f64],
         (command, sent): (&[f64], &[f64]),
         step: usize,
-    ) -> Result<Moment, EnvFault> {
+    ) -> Result<Snapshot, EnvFault> {
         let mut state = vec![0.0; self.spec.state.len()];
         let mut effort = vec![0.0; self.spec.effort.len()];
         env.state(&mut state);
         self.law.effort(design, command, &state, &mut effort);
         let result = env.step(&effort, sent);
-        Moment::look(env, step, result.reward, result.end)
+        Snapshot::take(env, step, result.reward, result.end)
     }
 
     /// The episode of this number, up to its end or to [`STEPS`] steps.
-    fn episode(&self, env: &mut dyn Environment, episode: u64) -> Result<Vec<Moment>, EnvFault> {
+    fn episode(&self, env: &mut dyn Environment, episode: u64) -> Result<Vec<Snapshot>, EnvFault> {
         let (design, commands) = self.inputs(episode, STEPS.min(env.spec().horizon));
-        let mut moments = vec![Self::reset(env, episode)?];
+        let mut snapshots = vec![Self::reset(env, episode)?];
         for (i, command) in commands.iter().enumerate() {
-            moments.push(self.step(env, &design, (command, command), i + 1)?);
-            if moments[i + 1].end.is_some() {
+            snapshots.push(self.step(env, &design, (command, command), i + 1)?);
+            if snapshots[i + 1].end.is_some() {
                 break;
             }
         }
-        Ok(moments)
+        Ok(snapshots)
     }
 
     /// Starts follow the stream.
@@ -200,9 +200,9 @@ impl Check<'_> {
         for episode in 0..STARTS {
             starts.push(Self::reset(env.as_mut(), episode)?);
             let again = Self::reset(env.as_mut(), episode)?;
-            starts[episode as usize].same(&again, "the same stream starts both", 0)?;
+            starts[episode as usize].check_same(&again, "the same stream starts both", 0)?;
         }
-        let first_of_its_kind = |i: &usize| starts[..*i].iter().all(|s| s.same(&starts[*i], "", 0).is_err());
+        let first_of_its_kind = |i: &usize| starts[..*i].iter().all(|s| s.check_same(&starts[*i], "", 0).is_err());
         let distinct = (0..starts.len()).filter(first_of_its_kind).count();
         // Of random starts a few may coincide where there are only a few; all of them do not.
         if (distinct == 1) == fixed { Ok(()) } else { Err(EnvFault::Starts { distinct, streams: starts.len(), fixed }) }
@@ -212,8 +212,8 @@ impl Check<'_> {
     fn repeats(&self) -> Result<(), EnvFault> {
         let mut env = self.make.make(None);
         let wanted = self.episode(env.as_mut(), 0)?;
-        let compare = |moments: &[Moment], cause| {
-            wanted.iter().zip(moments).enumerate().try_for_each(|(i, (a, b))| a.same(b, cause, i))
+        let compare = |snapshots: &[Snapshot], cause| {
+            wanted.iter().zip(snapshots).enumerate().try_for_each(|(i, (a, b))| a.check_same(b, cause, i))
         };
         let mut fresh = self.make.make(None);
         compare(&self.episode(fresh.as_mut(), 0)?, "both are the same episode in fresh environments")?;
@@ -226,8 +226,8 @@ impl Check<'_> {
         Self::reset(beside.as_mut(), 1)?;
         let mut beside_runs = true;
         for (i, (command, other)) in commands.iter().zip(&other_commands).enumerate() {
-            let moment = self.step(env.as_mut(), &design, (command, command), i + 1)?;
-            wanted[i + 1].same(&moment, "another environment beside it changes nothing", i + 1)?;
+            let snapshot = self.step(env.as_mut(), &design, (command, command), i + 1)?;
+            wanted[i + 1].check_same(&snapshot, "another environment beside it changes nothing", i + 1)?;
             beside_runs =
                 beside_runs && self.step(beside.as_mut(), &other_design, (other, other), i + 1)?.end.is_none();
         }
@@ -249,7 +249,7 @@ impl Check<'_> {
             }
             let first = self.step(at.as_mut(), &design, (&limit, &limit), i + 1)?;
             let second = self.step(beyond.as_mut(), &design, (&limit, &sent), i + 1)?;
-            first.same(&second, "one command is at its limit, the other beyond", i + 1)?;
+            first.check_same(&second, "one command is at its limit, the other beyond", i + 1)?;
             if first.end.is_some() {
                 break;
             }

@@ -86,7 +86,7 @@ impl ActionLayout {
 /// Turns actions into what the environment takes. Where the effort is not in the action, the law is evaluated here, in
 /// the simulator's numbers, on the command within the motors' limits.
 #[derive(Clone, Debug)]
-pub(crate) struct Body {
+pub(crate) struct ActionDecoder {
     law: Law,
     layout: ActionLayout,
     limits: Vec<(f64, f64)>,
@@ -96,7 +96,7 @@ pub(crate) struct Body {
     pub(crate) command: Vec<f64>,
 }
 
-impl Body {
+impl ActionDecoder {
     pub(crate) fn new(law: &Law, placements: &[Placement], layout: &ActionLayout, ports: &[CommandPort]) -> Self {
         Self {
             law: law.clone(),
@@ -110,7 +110,7 @@ impl Body {
 
     /// Fills `effort` and `command` from an action at a state.
     #[inline]
-    pub(crate) fn apply(&mut self, action: &[f64], state: &[f64]) {
+    pub(crate) fn decode(&mut self, action: &[f64], state: &[f64]) {
         let (sampled, rest) = action.split_at(self.layout.sampled.len());
         let (efforts, commands) = rest.split_at(self.layout.efforts);
         for ((limited, &command), &(lo, hi)) in self.command.iter_mut().zip(commands).zip(&self.limits) {

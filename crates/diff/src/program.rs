@@ -169,8 +169,8 @@ impl Program {
         tape.uniforms[..inputs].copy_from_slice(uniforms);
         for (k, instruction) in self.uniform_code.iter().enumerate() {
             let value = match *instruction {
-                Instruction::Unary(op, a) => op.value(tape.same(a)),
-                Instruction::Binary(op, a, b) => op.value(tape.same(a), tape.same(b)),
+                Instruction::Unary(op, a) => op.value(tape.uniform_value(a)),
+                Instruction::Binary(op, a, b) => op.value(tape.uniform_value(a), tape.uniform_value(b)),
             };
             tape.uniforms[inputs + k] = value;
         }
@@ -190,10 +190,10 @@ impl Program {
         for (k, instruction) in self.uniform_code.iter().enumerate() {
             let value = tape.uniforms[inputs + k];
             let tangent = match *instruction {
-                Instruction::Unary(op, a) => op.pull(tape.same_tangent(a), tape.same(a), value),
+                Instruction::Unary(op, a) => op.pull(tape.uniform_tangent(a), tape.uniform_value(a), value),
                 Instruction::Binary(op, a, b) => {
-                    let (x, y) = (tape.same(a), tape.same(b));
-                    op.pull_a(tape.same_tangent(a), x, y, value) + op.pull_b(tape.same_tangent(b), x, y, value)
+                    let (x, y) = (tape.uniform_value(a), tape.uniform_value(b));
+                    op.pull_a(tape.uniform_tangent(a), x, y, value) + op.pull_b(tape.uniform_tangent(b), x, y, value)
                 }
             };
             tape.uniform_tangents[inputs + k] = tangent;
@@ -215,11 +215,11 @@ impl Program {
             let value = tape.uniforms[inputs + k];
             match *instruction {
                 Instruction::Unary(op, a) => {
-                    let pulled = op.pull(g, tape.same(a), value);
+                    let pulled = op.pull(g, tape.uniform_value(a), value);
                     tape.add_uniform(a, pulled);
                 }
                 Instruction::Binary(op, a, b) => {
-                    let (x, y) = (tape.same(a), tape.same(b));
+                    let (x, y) = (tape.uniform_value(a), tape.uniform_value(b));
                     tape.add_uniform(a, op.pull_a(g, x, y, value));
                     tape.add_uniform(b, op.pull_b(g, x, y, value));
                 }

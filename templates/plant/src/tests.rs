@@ -21,7 +21,7 @@ fn the_law_has_the_right_derivatives() -> Result<(), Failed> {
     let law = Law::new(Spring::new()?);
     // Column by column: motor (N·m), angle (rad), speed (rad/s). Keep away from the kinks of `min`, `max` and `abs`.
     let columns = [[0.3, -1.0], [0.4, -0.9], [2.0, 0.1]].concat();
-    gradcheck(&law.program(), &[250.0], &columns, &GradCheckSettings::default())?;
+    gradcheck(law.program(), &[250.0], &columns, &GradCheckSettings::default())?;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use hwasp_core::{Batch, Episode};
 use nalgebra::{DMatrix, DVector};
 
-use super::Shown;
+use super::InputDims;
 use crate::archive::{Exchange, Persist, StateError};
 
 /// Ridge regression of the discounted return on [o, o², a, a², a³, 1], with o what it sees, clipped to ±10, and a = t/100
@@ -11,15 +11,15 @@ use crate::archive::{Exchange, Persist, StateError};
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearBaseline {
     coefficients: Vec<f64>,
-    /// What it sees, of the state and of the context all or nothing.
-    seen: Shown,
+    /// Of what it sees of a batch: of the state and of the context all or nothing.
+    visible: InputDims,
     ridge: f64,
 }
 
 impl LinearBaseline {
     /// Zero everywhere until the first fit.
-    pub fn new(seen: Shown, ridge: f64) -> Self {
-        Self { coefficients: vec![0.0; 2 * (seen.obs + seen.state + seen.context) + 4], seen, ridge }
+    pub fn new(visible: InputDims, ridge: f64) -> Self {
+        Self { coefficients: vec![0.0; 2 * (visible.obs + visible.state + visible.context) + 4], visible, ridge }
     }
 
     /// Calls `each` with row and features of every step of the episode, and with those of the state after it.
@@ -30,7 +30,7 @@ impl LinearBaseline {
         features: &mut [f64],
         mut each: impl FnMut(Option<usize>, &[f64]),
     ) {
-        let Shown { obs: obs_dim, state: state_dim, context } = self.seen;
+        let InputDims { obs: obs_dim, state: state_dim, context } = self.visible;
         let steps = episode.rows.clone().map(Some).chain([None]);
         for (time, row) in steps.enumerate() {
             let (obs, state) = match row {
@@ -109,8 +109,8 @@ mod tests {
     use super::*;
     use hwasp_core::End;
 
-    fn seen(state: usize) -> Shown {
-        Shown { obs: 1, state, context: 0 }
+    fn dims(state: usize) -> InputDims {
+        InputDims { obs: 1, state, context: 0 }
     }
 
     #[test]
@@ -132,7 +132,7 @@ mod tests {
             }],
             ..Batch::default()
         };
-        let mut baseline = LinearBaseline::new(seen(0), 1e-5);
+        let mut baseline = LinearBaseline::new(dims(0), 1e-5);
         assert_eq!(baseline.predict(&batch).0, vec![0.0; rows]);
         baseline.fit(&batch, &targets);
         let (values, last) = baseline.predict(&batch);
@@ -163,7 +163,7 @@ mod tests {
         let features = |o: f64, a: f64| [o, o * o, a, a * a, a * a * a, 1.0];
         let (first, second, last) = (features(10.0, 0.0), features(-1.0, 0.01), features(0.5, 0.02));
         let wanted: f64 = (0..6).map(|i| (first[i] + second[i]) * last[i]).sum();
-        let mut baseline = LinearBaseline::new(seen(0), 1e12);
+        let mut baseline = LinearBaseline::new(dims(0), 1e12);
         baseline.fit(&batch, &[1e12, 1e12]);
         assert!((f64::from(baseline.predict(&batch).1[0]) - wanted).abs() < 1e-5 * wanted);
         // The share of the time: 0.01·0.02, far below the rest.
@@ -178,7 +178,7 @@ mod tests {
     fn sees_the_context_where_it_is_told_to() {
         let (batch, targets) = super::super::tests::two_that_look_alike();
         let worst = |context| {
-            let mut baseline = LinearBaseline::new(Shown { context, ..seen(0) }, 1e-5);
+            let mut baseline = LinearBaseline::new(InputDims { context, ..dims(0) }, 1e-5);
             baseline.fit(&batch, &targets);
             let (values, last) = baseline.predict(&batch);
             let off = values.iter().zip(&targets).chain(last.iter().zip(&[10.0, -10.0])).map(|(v, t)| (v - t).abs());
@@ -207,7 +207,7 @@ mod tests {
             ..Batch::default()
         };
         let error = |state_dim| {
-            let mut baseline = LinearBaseline::new(seen(state_dim), 1e-5);
+            let mut baseline = LinearBaseline::new(dims(state_dim), 1e-5);
             baseline.fit(&batch, &targets);
             let (values, last) = baseline.predict(&batch);
             let errors = values.iter().zip(&targets).map(|(v, t)| (v - t).abs());

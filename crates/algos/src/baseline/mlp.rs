@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use super::Shown;
+use super::InputDims;
 use crate::adam::{Adam, AdamConfig, clip_norm};
 use crate::archive::{Exchange, Persist, StateError};
 use crate::minibatch::{BLOCK, minibatches};
@@ -71,9 +71,10 @@ pub struct MlpBaseline {
     moments: Option<(f64, f64)>,
     /// Centre and scale of each component that it sees of state and context, from the first batch.
     scaling: Vec<(f32, f32)>,
-    shown: Shown,
-    /// Of which it sees so much.
-    seen: Shown,
+    /// Of a batch.
+    dims: InputDims,
+    /// Of what it sees of a batch.
+    visible: InputDims,
     seed: u64,
     tape: MlpTape<f32>,
 }
@@ -92,10 +93,10 @@ const MOMENT_RATE: f64 = 0.1;
 
 impl MlpBaseline {
     /// Zero or near zero everywhere until the first fit.
-    pub fn new(config: MlpBaselineConfig, shown: Shown, seed: u64) -> Self {
-        let seen = shown.seen(config.privileged, config.context);
-        let beside = seen.state + seen.context;
-        let mut sizes = vec![seen.obs + beside];
+    pub fn new(config: MlpBaselineConfig, dims: InputDims, seed: u64) -> Self {
+        let visible = dims.visible(config.privileged, config.context);
+        let beside = visible.state + visible.context;
+        let mut sizes = vec![visible.obs + beside];
         sizes.extend(&config.hidden);
         sizes.push(1);
         let network = Mlp::new(&sizes, Activation::Tanh, Activation::Identity);
@@ -104,14 +105,14 @@ impl MlpBaseline {
         let adam = Adam::new(AdamConfig::default(), params.len());
         let tape = network.tape(BLOCK);
         let scaling = vec![(0.0, 1.0); beside];
-        Self { config, network, params, adam, moments: None, scaling, shown, seen, seed, tape }
+        Self { config, network, params, adam, moments: None, scaling, dims, visible, seed, tape }
     }
 
     /// Takes centre and scale of state and context from a batch.
     fn take_scaling(&mut self, batch: &Batch) {
-        let (states, contexts) = self.scaling.split_at_mut(self.seen.state);
+        let (states, contexts) = self.scaling.split_at_mut(self.visible.state);
         for (s, scaling) in states.iter_mut().enumerate() {
-            *scaling = centre_and_scale(batch.state.iter().skip(s).step_by(self.shown.state));
+            *scaling = centre_and_scale(batch.state.iter().skip(s).step_by(self.dims.state));
         }
         for (c, scaling) in contexts.iter_mut().enumerate() {
             *scaling = centre_and_scale(batch.episodes.iter().map(|episode| &episode.context[c]));
@@ -121,19 +122,19 @@ impl MlpBaseline {
     /// Writes what the network sees at one moment.
     #[inline]
     fn fill(&self, obs: &[f32], state: &[f32], context: &[f32], to: &mut [f32]) {
-        let (first, beside) = to.split_at_mut(self.seen.obs);
+        let (first, beside) = to.split_at_mut(self.visible.obs);
         first.copy_from_slice(obs);
-        let seen = state[..self.seen.state].iter().chain(&context[..self.seen.context]);
+        let seen = state[..self.visible.state].iter().chain(&context[..self.visible.context]);
         for ((to, x), (centre, scale)) in beside.iter_mut().zip(seen).zip(&self.scaling) {
             *to = (x - centre) / scale;
         }
     }
 
     fn fill_row(&self, batch: &Batch, row: usize, to: &mut [f32]) {
-        let Shown { obs, state, .. } = self.shown;
+        let InputDims { obs, state, .. } = self.dims;
         let episode = || batch.episodes.partition_point(|episode| episode.rows.end <= row);
         // Looked for only where it is seen: there are many rows.
-        let context = if self.seen.context > 0 { &batch.episodes[episode()].context[..] } else { &[] };
+        let context = if self.visible.context > 0 { &batch.episodes[episode()].context[..] } else { &[] };
         self.fill(&batch.obs[row * obs..][..obs], &batch.state[row * state..][..state], context, to);
     }
 
@@ -253,7 +254,7 @@ mod tests {
     use crate::archive::Array;
     use hwasp_core::{End, Episode};
 
-    const SHOWN: Shown = Shown { obs: 1, state: 0, context: 0 };
+    const DIMS: InputDims = InputDims { obs: 1, state: 0, context: 0 };
 
     fn batch(rows: usize) -> (Batch, Vec<f32>) {
         let obs: Vec<f32> = (0..rows).map(|i| ((i * 37 % 101) as f32) / 50.0 - 1.0).collect();
@@ -273,7 +274,7 @@ mod tests {
     fn learns_a_parabola_far_from_zero() {
         let (batch, targets) = batch(400);
         let config = MlpBaselineConfig { minibatch_rows: 100, epochs: 600, ..MlpBaselineConfig::default() };
-        let mut baseline = MlpBaseline::new(config, SHOWN, 5);
+        let mut baseline = MlpBaseline::new(config, DIMS, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let (values, last) = baseline.predict(&batch);
         let worst = values.iter().zip(&targets).map(|(v, t)| (v - t).abs()).fold(0.0, f32::max);
@@ -287,7 +288,7 @@ mod tests {
         let (batch, targets) = super::super::tests::two_that_look_alike();
         let worst = |context| {
             let config = MlpBaselineConfig { context, minibatch_rows: 10, epochs: 600, ..MlpBaselineConfig::default() };
-            let mut baseline = MlpBaseline::new(config, Shown { context: 1, ..SHOWN }, 5);
+            let mut baseline = MlpBaseline::new(config, InputDims { context: 1, ..DIMS }, 5);
             baseline.fit(&batch, &targets, 0.0, 0);
             let (values, last) = baseline.predict(&batch);
             let off = values.iter().zip(&targets).chain(last.iter().zip(&[10.0, -10.0])).map(|(v, t)| (v - t).abs());
@@ -299,7 +300,7 @@ mod tests {
     /// The message named the third moment of a state that has one or three.
     #[test]
     fn moments_that_are_no_pair_are_refused() {
-        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), SHOWN, 5);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), DIMS, 5);
         let mut archive = baseline.save().unwrap();
         for count in [1, 3] {
             archive.insert("moments".into(), Array::F64(vec![0.5; count]));
@@ -311,7 +312,7 @@ mod tests {
     #[test]
     fn moving_the_moments_does_not_move_the_values() {
         let (batch, targets) = batch(100);
-        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), SHOWN, 5);
+        let mut baseline = MlpBaseline::new(MlpBaselineConfig::default(), DIMS, 5);
         baseline.fit(&batch, &targets, 0.0, 0);
         let before = baseline.predict(&batch).0;
         baseline.follow(&vec![1000.0; 100]);

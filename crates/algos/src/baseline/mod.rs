@@ -29,9 +29,9 @@ pub enum BaselineConfig {
     Mlp(MlpBaselineConfig),
 }
 
-/// How many components there are of what an environment shows.
+/// How many numbers a baseline has before it at each step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct InputDims {
     /// Of the controller's input.
     pub obs: usize,
     /// Of the law's state.
@@ -40,16 +40,16 @@ pub struct Shown {
     pub context: usize,
 }
 
-impl Shown {
+impl InputDims {
     /// What a policy's batches have.
-    pub fn to(policy: &impl Policy) -> Self {
+    pub fn of(policy: &impl Policy) -> Self {
         Self { obs: policy.obs_dim(), state: policy.state_dim(), context: policy.context_dim() }
     }
 
     /// What is left of it for one that sees the state or does not, and the context or not.
-    fn seen(self, state: bool, context: bool) -> Self {
-        let seen = |sees, count| if sees { count } else { 0 };
-        Self { state: seen(state, self.state), context: seen(context, self.context), ..self }
+    fn visible(self, state: bool, context: bool) -> Self {
+        let visible = |sees, count| if sees { count } else { 0 };
+        Self { state: visible(state, self.state), context: visible(context, self.context), ..self }
     }
 }
 
@@ -63,13 +63,13 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// A fresh one for what an environment shows.
-    pub fn new(config: &BaselineConfig, shown: Shown, seed: u64) -> Self {
+    /// A fresh one for batches of these dimensions.
+    pub fn new(config: &BaselineConfig, dims: InputDims, seed: u64) -> Self {
         match config {
             BaselineConfig::Linear { ridge, privileged, context } => {
-                Self::Linear(LinearBaseline::new(shown.seen(*privileged, *context), *ridge))
+                Self::Linear(LinearBaseline::new(dims.visible(*privileged, *context), *ridge))
             }
-            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), shown, seed))),
+            BaselineConfig::Mlp(config) => Self::Mlp(Box::new(MlpBaseline::new(config.clone(), dims, seed))),
         }
     }
 

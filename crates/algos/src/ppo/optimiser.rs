@@ -35,7 +35,7 @@ pub(super) struct GradientStep<P: Policy> {
 
 /// Sums over the rows of one gradient step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Totals {
+pub(super) struct RowSums {
     pub(super) kl: f64,
     pub(super) clipped: f64,
     pub(super) rows: usize,
@@ -97,26 +97,26 @@ impl<P: Policy> Optimiser<P> {
             if !whole {
                 order.shuffle(&mut shuffle);
             }
-            let mut epoch_totals = Totals::default();
+            let mut epoch_sums = RowSums::default();
             for indices in minibatches(&order, size) {
                 // The whole batch in its own order needs gathering but once.
                 if !whole || epoch == 0 {
                     let dims = self.dims();
                     self.step.minibatch.gather(batch, advantage, indices, dims);
                 }
-                let totals = self.step.run(&*self.policy, &self.params, &self.config, progress);
+                let sums = self.step.run(&*self.policy, &self.params, &self.config, progress);
                 norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
                 steps += 1;
                 if !f64::is_finite(norms) {
                     return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
                 }
                 self.adam.step(&mut self.params, &self.step.gradient, &rates);
-                epoch_totals.kl += totals.kl;
-                epoch_totals.clipped += totals.clipped;
-                epoch_totals.rows += totals.rows;
+                epoch_sums.kl += sums.kl;
+                epoch_sums.clipped += sums.clipped;
+                epoch_sums.rows += sums.rows;
             }
-            let n = epoch_totals.rows.max(1) as f64;
-            (kl, clip_fraction) = (epoch_totals.kl / n, epoch_totals.clipped / n);
+            let n = epoch_sums.rows.max(1) as f64;
+            (kl, clip_fraction) = (epoch_sums.kl / n, epoch_sums.clipped / n);
             epochs = epoch + 1;
             if self.config.target_kl.is_some_and(|limit| kl > 1.5 * limit) {
                 break;
@@ -135,11 +135,11 @@ impl<P: Policy> Optimiser<P> {
 impl<P: Policy> GradientStep<P> {
     /// The gradient of the loss over the minibatch, left in `gradient`:
     /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term).
-    pub(super) fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> Totals {
+    pub(super) fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> RowSums {
         policy.bind(params, &mut self.tape);
         policy.log_std(params, progress, &mut self.log_std);
         self.log_std_gradient.fill(0.0);
-        let mut totals = Totals { rows: self.minibatch.count, ..Totals::default() };
+        let mut sums = RowSums { rows: self.minibatch.count, ..RowSums::default() };
         for block in self.minibatch.blocks() {
             let rows = self.minibatch.rows(&block);
             let mean = policy.forward(&rows, &mut self.tape);
@@ -151,8 +151,8 @@ impl<P: Policy> GradientStep<P> {
                 clip_ratio: config.clip_ratio as f32,
             };
             let (kl, clipped) = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
-            totals.kl += kl;
-            totals.clipped += clipped;
+            sums.kl += kl;
+            sums.clipped += clipped;
             policy.vjp(&rows, &self.cotangent, &mut self.tape);
         }
         policy.gradient(&mut self.tape, &mut self.gradient);
@@ -162,6 +162,6 @@ impl<P: Policy> GradientStep<P> {
                 *to = from - config.entropy_coef as f32;
             }
         }
-        totals
+        sums
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hwasp_core::{End, Episode, ParamGroup, ParamKind, Rows, Serial, gaussian};
 
-use super::optimiser::Totals;
+use super::optimiser::RowSums;
 use super::*;
 
 /// One command whose mean is w·o; the parameters are w and log σ.
@@ -138,14 +138,14 @@ fn settings() -> PpoSettings {
 }
 
 /// Gradient of w and log σ, KL and clipped rows of one step over the whole batch, and the cotangents of the means.
-fn differentiate(batch: &Batch) -> ([f32; 2], Totals, [f32; 3]) {
+fn differentiate(batch: &Batch) -> ([f32; 2], RowSums, [f32; 3]) {
     let mut ppo = Ppo::new(&settings(), Line::new(), params(), 0);
     let advantage: Vec<f32> = batch.reward.iter().map(|&r| r as f32).collect();
     ppo.optimiser.step.minibatch.gather(batch, &advantage, &[0, 1, 2], (1, 0, 1));
-    let totals = ppo.optimiser.step.run(&Line::new(), &params(), &ppo.optimiser.config, 0.0);
+    let sums = ppo.optimiser.step.run(&Line::new(), &params(), &ppo.optimiser.config, 0.0);
     let mut cotangent = [0.0; 3];
     cotangent.copy_from_slice(&ppo.optimiser.step.cotangent[..3]);
-    ([ppo.optimiser.step.gradient[0], ppo.optimiser.step.gradient[1]], totals, cotangent)
+    ([ppo.optimiser.step.gradient[0], ppo.optimiser.step.gradient[1]], sums, cotangent)
 }
 
 /// -mean[min(ρ·A, clip(ρ, 0.8, 1.2)·A)] - 0.1·H, written down independently.
@@ -188,14 +188,14 @@ fn first() -> Batch {
 
 #[test]
 fn three_samples_by_hand() {
-    let (gradient, totals, cotangent) = differentiate(&first());
+    let (gradient, sums, cotangent) = differentiate(&first());
     for (found, wanted) in cotangent.into_iter().zip([0.0, 1.0 / 6.0, 5.0 / 48.0]) {
         close(found, wanted);
     }
     close(gradient[0], 31.0 / 48.0);
     close(gradient[1], -13.0 / 16.0 - 0.1);
-    close(totals.kl, 0.25 - (15.0_f64 / 16.0).ln());
-    assert_eq!((totals.clipped, totals.rows), (1.0, 3));
+    close(sums.kl, 0.25 - (15.0_f64 / 16.0).ln());
+    assert_eq!((sums.clipped, sums.rows), (1.0, 3));
     let entropy = std::f64::consts::LN_2 + 0.5 * (1.0 + gaussian::LOG_TWO_PI);
     close(loss(&first(), 1.0, std::f64::consts::LN_2) + 0.1 * entropy, -0.55);
     check_against_loss(&first());
@@ -209,13 +209,13 @@ fn three_samples_by_hand() {
 #[test]
 fn negative_advantages_are_clipped_below() {
     let batch = batch([0.5, 1.1, 0.9], [-1.0, -2.0, 3.0]);
-    let (gradient, totals, cotangent) = differentiate(&batch);
+    let (gradient, sums, cotangent) = differentiate(&batch);
     for (found, wanted) in cotangent.into_iter().zip([0.0, -11.0 / 15.0, -9.0 / 40.0]) {
         close(found, wanted);
     }
     close(gradient[0], -257.0 / 120.0);
     close(gradient[1], 23.0 / 8.0 - 0.1);
-    assert_eq!(totals.clipped, 1.0);
+    assert_eq!(sums.clipped, 1.0);
     check_against_loss(&batch);
 }
 

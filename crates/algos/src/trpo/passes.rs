@@ -25,7 +25,7 @@ fn jobs(rows: &Minibatch) -> (usize, usize) {
 pub(super) struct Passes<P: Policy> {
     policy: Arc<P>,
     idle: Mutex<Vec<Worker<P>>>,
-    shards: Vec<Mutex<Shard>>,
+    sums: Vec<Mutex<JobSums>>,
 }
 
 struct Worker<P: Policy> {
@@ -37,7 +37,7 @@ struct Worker<P: Policy> {
 
 /// What one job gave.
 #[derive(Default)]
-struct Shard {
+struct JobSums {
     gradient: Vec<f32>,
     log_std_gradient: Vec<f32>,
     /// Means of the policy that acted, `[A × BLOCK]` for each block.
@@ -52,7 +52,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl<P: Policy> Passes<P> {
     pub(super) fn new(policy: Arc<P>) -> Self {
-        Self { policy, idle: Mutex::new(Vec::new()), shards: Vec::new() }
+        Self { policy, idle: Mutex::new(Vec::new()), sums: Vec::new() }
     }
 
     pub(super) fn policy(&self) -> &P {
@@ -72,7 +72,7 @@ impl<P: Policy> Passes<P> {
         executor: &dyn Executor,
         rows: &Minibatch,
         bind: impl Fn(&mut P::Tape) + Sync,
-        job: impl Fn(&mut Worker<P>, &mut Shard, &mut dyn Iterator<Item = Range<usize>>) + Sync,
+        job: impl Fn(&mut Worker<P>, &mut JobSums, &mut dyn Iterator<Item = Range<usize>>) + Sync,
     ) {
         let (each, count) = jobs(rows);
         lock(&self.idle).iter_mut().for_each(|worker| worker.bound = false);
@@ -89,7 +89,7 @@ impl<P: Policy> Passes<P> {
             } else {
                 bind(&mut worker.tape);
             }
-            job(&mut worker, &mut lock(&self.shards[i]), &mut rows.blocks().skip(i * each).take(each));
+            job(&mut worker, &mut lock(&self.sums[i]), &mut rows.blocks().skip(i * each).take(each));
             lock(&self.idle).push(worker);
         });
     }
@@ -97,8 +97,8 @@ impl<P: Policy> Passes<P> {
     /// Adds up the gradients of all jobs, in their order.
     fn sum_gradients(&self, rows: &Minibatch, gradient: &mut [f64]) {
         gradient.fill(0.0);
-        for shard in &self.shards[..jobs(rows).1] {
-            for (to, &from) in gradient.iter_mut().zip(&lock(shard).gradient) {
+        for job_sums in &self.sums[..jobs(rows).1] {
+            for (to, &from) in gradient.iter_mut().zip(&lock(job_sums).gradient) {
                 *to += f64::from(from);
             }
         }
@@ -115,11 +115,11 @@ impl<P: Policy> Passes<P> {
         gradient: &mut [f64],
     ) -> f64 {
         let ((each, count), actions) = (jobs(rows), self.policy.action_dim());
-        self.shards.resize_with(self.shards.len().max(count), || {
-            Mutex::new(Shard {
+        self.sums.resize_with(self.sums.len().max(count), || {
+            Mutex::new(JobSums {
                 gradient: vec![0.0; params.len()],
                 log_std_gradient: vec![0.0; actions],
-                ..Shard::default()
+                ..JobSums::default()
             })
         });
         let log_std = self.log_std(params, progress);
@@ -127,30 +127,30 @@ impl<P: Policy> Passes<P> {
             executor,
             rows,
             |tape| self.policy.bind(params, tape),
-            |worker, shard, blocks| {
-                shard.log_std_gradient.fill(0.0);
-                shard.surrogate = 0.0;
-                shard.old_mean.resize(actions * BLOCK * each, 0.0);
-                let kept = shard.old_mean.chunks_exact_mut(actions * BLOCK);
+            |worker, job_sums, blocks| {
+                job_sums.log_std_gradient.fill(0.0);
+                job_sums.surrogate = 0.0;
+                job_sums.old_mean.resize(actions * BLOCK * each, 0.0);
+                let kept = job_sums.old_mean.chunks_exact_mut(actions * BLOCK);
                 for (block, kept) in blocks.zip(kept) {
                     let taken = rows.rows(&block);
                     let mean = self.policy.forward(&taken, &mut worker.tape);
                     kept.copy_from_slice(&mean[..actions * BLOCK]);
                     let surrogate =
                         Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
-                    shard.surrogate += surrogate.sum();
-                    surrogate.differentiate(&mut worker.cotangent, &mut shard.log_std_gradient);
+                    job_sums.surrogate += surrogate.sum();
+                    surrogate.differentiate(&mut worker.cotangent, &mut job_sums.log_std_gradient);
                     self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
                 }
-                self.policy.gradient(&mut worker.tape, &mut shard.gradient);
+                self.policy.gradient(&mut worker.tape, &mut job_sums.gradient);
                 if let Some(range) = self.policy.log_std_params() {
-                    shard.gradient[range].copy_from_slice(&shard.log_std_gradient);
+                    job_sums.gradient[range].copy_from_slice(&job_sums.log_std_gradient);
                 }
             },
         );
         self.sum_gradients(rows, gradient);
-        let shards = self.shards[..count].iter();
-        -shards.map(|shard| lock(shard).surrogate).sum::<f64>() / rows.count.max(1) as f64
+        let sums = self.sums[..count].iter();
+        -sums.map(|job_sums| lock(job_sums).surrogate).sum::<f64>() / rows.count.max(1) as f64
     }
 
     /// Writes Jᵀ·M·J·v with J the derivative of the means at `params`, M = diag(`weight`) for every row, and v = `tangent`;
@@ -168,7 +168,7 @@ impl<P: Policy> Passes<P> {
             self.policy.bind(params, tape);
             self.policy.bind_tangent(tangent, tape);
         };
-        self.each(executor, rows, bind, |worker, shard, blocks| {
+        self.each(executor, rows, bind, |worker, job_sums, blocks| {
             for block in blocks {
                 let taken = rows.rows(&block);
                 self.policy.forward(&taken, &mut worker.tape);
@@ -180,7 +180,7 @@ impl<P: Policy> Passes<P> {
                 }
                 self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
             }
-            self.policy.gradient(&mut worker.tape, &mut shard.gradient);
+            self.policy.gradient(&mut worker.tape, &mut job_sums.gradient);
         });
         self.sum_gradients(rows, product);
     }
@@ -200,22 +200,22 @@ impl<P: Policy> Passes<P> {
             executor,
             rows,
             |tape| self.policy.bind(params, tape),
-            |worker, shard, blocks| {
-                (shard.surrogate, shard.kl) = (0.0, 0.0);
-                let kept = shard.old_mean.chunks_exact(actions * BLOCK);
+            |worker, job_sums, blocks| {
+                (job_sums.surrogate, job_sums.kl) = (0.0, 0.0);
+                let kept = job_sums.old_mean.chunks_exact(actions * BLOCK);
                 for (block, kept) in blocks.zip(kept) {
                     let mean = self.policy.forward(&rows.rows(&block), &mut worker.tape);
-                    shard.kl += divergence((kept, &old), (mean, &log_std), block.len());
+                    job_sums.kl += divergence((kept, &old), (mean, &log_std), block.len());
                     let surrogate =
                         Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
-                    shard.surrogate += surrogate.sum();
+                    job_sums.surrogate += surrogate.sum();
                 }
             },
         );
         let (mut surrogate, mut kl) = (0.0, 0.0);
-        for shard in &self.shards[..jobs(rows).1] {
-            let shard = lock(shard);
-            (surrogate, kl) = (surrogate + shard.surrogate, kl + shard.kl);
+        for job_sums in &self.sums[..jobs(rows).1] {
+            let job_sums = lock(job_sums);
+            (surrogate, kl) = (surrogate + job_sums.surrogate, kl + job_sums.kl);
         }
         let n = rows.count.max(1) as f64;
         (-surrogate / n, kl / n)

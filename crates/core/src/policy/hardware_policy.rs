@@ -9,7 +9,7 @@ use super::compose::{Composition, PolicySpec};
 use super::{ParamGroup, ParamKind, Policy, Rows};
 use crate::design::DesignSpace;
 use crate::environment::{CommandPort, EnvSpec};
-use crate::placement::{Body, PlacementError};
+use crate::placement::{ActionDecoder, PlacementError};
 use crate::streams::{Purpose, stream};
 
 /// A perceptron composed with a hardware law (paper, section 4): `π(a_new | s, a)·π(a | s)` as one Gaussian.
@@ -32,12 +32,13 @@ pub struct HardwarePolicy {
 pub struct PolicyTape {
     controller: MlpTape<f32>,
     law: ProgramTape<f32>,
-    /// Inputs of the law: controller outputs, state, sampled design; and their cotangents or tangents.
+    /// Inputs of the law: controller outputs, state, sampled design.
     columns: Vec<f32>,
-    moved_columns: Vec<f32>,
+    /// Their cotangents after a vjp, their tangents after a jvp.
+    column_derivatives: Vec<f32>,
     /// Means, and their tangents.
     mean: Vec<f32>,
-    moved_mean: Vec<f32>,
+    mean_tangent: Vec<f32>,
     /// Cotangents of the controller's outputs, row by row.
     output_cotangent: Vec<f32>,
     max_rows: usize,
@@ -136,8 +137,8 @@ impl HardwarePolicy {
         group.expect("a policy has a group of every kind, if an empty one").range.clone()
     }
 
-    pub(crate) fn body(&self) -> Body {
-        Body::new(&self.spec.law, &self.spec.placements, &self.composition.layout, &self.commands)
+    pub(crate) fn action_decoder(&self) -> ActionDecoder {
+        ActionDecoder::new(&self.spec.law, &self.spec.placements, &self.composition.layout, &self.commands)
     }
 
     /// What the controller sees of an observation in SI.
@@ -244,9 +245,9 @@ impl Policy for HardwarePolicy {
         PolicyTape {
             controller: self.controller.tape(max_rows),
             law: program.tape(max_rows),
-            moved_columns: columns.clone(),
+            column_derivatives: columns.clone(),
             columns,
-            moved_mean: mean.clone(),
+            mean_tangent: mean.clone(),
             mean,
             output_cotangent: vec![0.0; self.commands.len() * max_rows],
             max_rows,
@@ -280,12 +281,12 @@ impl Policy for HardwarePolicy {
             cotangent,
             stride,
             &mut tape.law,
-            &mut tape.moved_columns,
+            &mut tape.column_derivatives,
             stride,
         );
         let commands = self.commands.len();
         let outputs = &mut tape.output_cotangent[..rows.count * commands];
-        for (j, column) in tape.moved_columns.chunks_exact(stride).take(commands).enumerate() {
+        for (j, column) in tape.column_derivatives.chunks_exact(stride).take(commands).enumerate() {
             put_column(&column[..rows.count], commands, j, outputs);
         }
         self.controller.vjp(rows.obs, outputs, &mut tape.controller);
@@ -311,19 +312,19 @@ impl Policy for HardwarePolicy {
         self.controller.jvp(rows.obs, &mut tape.controller);
         let stride = tape.max_rows;
         let (output, width) = tape.controller.tangent();
-        tape.moved_columns.fill(0.0);
-        for (j, column) in tape.moved_columns.chunks_exact_mut(stride).take(self.commands.len()).enumerate() {
+        tape.column_derivatives.fill(0.0);
+        for (j, column) in tape.column_derivatives.chunks_exact_mut(stride).take(self.commands.len()).enumerate() {
             take_column(output, width, j, &mut column[..rows.count]);
         }
         self.composition.program.jvp(
             &tape.columns,
-            &tape.moved_columns,
+            &tape.column_derivatives,
             stride,
             rows.count,
             &mut tape.law,
-            &mut tape.moved_mean,
+            &mut tape.mean_tangent,
             stride,
         );
-        &tape.moved_mean
+        &tape.mean_tangent
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, RolloutError, discounted};
 use crate::environment::{End, Environment};
-use crate::placement::Body;
+use crate::placement::ActionDecoder;
 use crate::policy::{Actor, HardwarePolicy, Policy};
 use crate::streams::{Purpose, Stream, stream};
 
@@ -19,7 +19,7 @@ pub(super) enum Keep {
 pub(super) struct Lanes<'p> {
     policy: &'p HardwarePolicy,
     pub(super) environments: Vec<Box<dyn Environment>>,
-    bodies: Vec<Body>,
+    decoders: Vec<ActionDecoder>,
     noise: Vec<Stream>,
     noisy: bool,
     horizon: usize,
@@ -66,7 +66,7 @@ impl<'p> Lanes<'p> {
         };
         Self {
             policy,
-            bodies: vec![policy.body(); count],
+            decoders: vec![policy.action_decoder(); count],
             noise: episodes.indices.clone().map(|index| named(noise, index)).collect(),
             noisy: matches!(episodes.kind, EpisodeKind::Training | EpisodeKind::NoisyEvaluation),
             environments,
@@ -119,10 +119,10 @@ impl<'p> Lanes<'p> {
                     continue;
                 }
                 let state = &states[e * state_dim..][..state_dim];
-                let body = &mut self.bodies[e];
+                let decoder = &mut self.decoders[e];
                 let action = actor.action(e);
-                body.apply(action, state);
-                let result = self.environments[e].step(&body.effort, &body.command);
+                decoder.decode(action, state);
+                let result = self.environments[e].step(&decoder.effort, &decoder.command);
                 let row = e * self.horizon + step;
                 let log_prob = actor.log_prob(e);
                 self.batch.reward[row] = result.reward;
@@ -172,7 +172,7 @@ impl<'p> Lanes<'p> {
     /// What each episode came to, in order.
     pub(super) fn results(&mut self, episodes: &Episodes, discount: f64) -> Vec<Result<EpisodeResult, RolloutError>> {
         let mut faults = std::mem::take(&mut self.batch.faults);
-        let result = |(e, environment): (usize, &Box<dyn Environment>)| {
+        let result = |(e, environment): (usize, &dyn Environment)| {
             let index = episodes.indices.start + e as u64;
             if let Some(at) = faults.iter().position(|fault| fault.episode == index) {
                 return Err(faults.swap_remove(at));
@@ -187,7 +187,7 @@ impl<'p> Lanes<'p> {
                 outcome: environment.outcome(),
             })
         };
-        self.environments.iter().enumerate().map(result).collect()
+        self.environments.iter().map(AsRef::as_ref).enumerate().map(result).collect()
     }
 
     /// All rows: closes the gaps that early ends and discarded episodes have left.

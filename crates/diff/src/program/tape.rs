@@ -77,7 +77,7 @@ impl<F: Float> ProgramTape<F> {
     }
 
     /// A value that is the same in all rows.
-    pub(super) fn same(&self, slot: Slot) -> F {
+    pub(super) fn uniform_value(&self, slot: Slot) -> F {
         match slot {
             Slot::Constant(c) => self.constants[c],
             Slot::Uniform(u) => self.uniforms[u],
@@ -88,7 +88,7 @@ impl<F: Float> ProgramTape<F> {
     }
 
     /// The tangent of a value that is the same in all rows.
-    pub(super) fn same_tangent(&self, slot: Slot) -> F {
+    pub(super) fn uniform_tangent(&self, slot: Slot) -> F {
         match slot {
             Slot::Uniform(u) => self.uniform_tangents[u],
             _ => F::ZERO,

@@ -89,7 +89,7 @@ pub fn checkpoint(bytes: &[u8]) {
 }
 
 fn comes_back(checkpoint: &Checkpoint, fault: Option<&str>) {
-    let bytes = encode(&checkpoint, EXPERIMENT, fault).expect("a checkpoint can be written");
+    let bytes = encode(checkpoint, EXPERIMENT, fault).expect("a checkpoint can be written");
     let read = decode(&bytes, EXPERIMENT).expect("what was written can be read");
     assert_eq!(encode(&read, EXPERIMENT, fault).expect("and written again"), bytes);
     assert_eq!((read.iteration, read.env_steps), (checkpoint.iteration, checkpoint.env_steps));

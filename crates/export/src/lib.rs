@@ -1,7 +1,7 @@
 //! From a run to a robot on the bench: what a run comes to, in files that other programs read.
 //!
-//! A [`Kind`] is what can be asked for; it gives named files, and [`export`] alone writes them. A new kind is a variant of
-//! [`Kind`] with a function from [`Source`] to files.
+//! A [`Kind`] is what can be asked for; it gives named files, and [`export()`] alone writes them. A new kind is a variant of
+//! [`Kind`], and a function from [`Source`] to files that [`export()`] calls for it.
 
 #![forbid(unsafe_code)]
 

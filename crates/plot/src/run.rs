@@ -1,9 +1,7 @@
 //! What pictures of a run say: its curve, axis texts, units and known optima.
 
-use std::error::Error;
-
 use hwasp_core::unit;
-use hwasp_runs::{DesignGroupSummary, RunError, SavedRun};
+use hwasp_runs::{DesignGroupSummary, ExtraFiles, RunError, SavedRun};
 use hwasp_training::{Assembly, total_name};
 
 use crate::curve::{Curve, RETURN, XAxis};
@@ -14,7 +12,7 @@ use crate::options::{PanelText, PlotOptions};
 const CURVES: &str = "curves.svg";
 
 /// What a finished run has beside its numbers: `curves.svg`, where there is a row to be drawn. For `RunFolder::finish`.
-pub fn curves_svg(saved: &SavedRun) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error + Send + Sync>> {
+pub fn curves_svg(saved: &SavedRun) -> ExtraFiles {
     let curve = saved_curve(saved, XAxis::EnvSteps)?;
     if curve.x.is_empty() {
         return Ok(Vec::new());

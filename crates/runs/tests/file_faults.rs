@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
-use std::error::Error;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,7 +12,7 @@ use std::time::Duration;
 use hwasp_core::Serial;
 use hwasp_experiment::Experiment;
 use hwasp_runs::files::{Disk, Files};
-use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun};
+use hwasp_runs::{ExtraFiles, Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun};
 use hwasp_testing::{Stopper, small};
 use hwasp_training::{Assembly, TrainError, train, train_from};
 
@@ -25,9 +24,10 @@ fn provenance(spec: &Experiment) -> Provenance {
     Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 
-/// A further file, as the program's picture is one.
-fn picture(_: &SavedRun) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error + Send + Sync>> {
-    Ok(vec![("curves.svg".to_owned(), b"<svg/>".to_vec())])
+/// A further file that is made of the learning curve, as the program's picture is.
+fn picture(saved: &SavedRun) -> ExtraFiles {
+    let rows = saved.metrics()?.rows.len();
+    Ok(vec![("curves.svg".to_owned(), format!("<svg>{rows}</svg>").into_bytes())])
 }
 
 /// A disk on which some steps fail.

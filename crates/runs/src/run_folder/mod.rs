@@ -8,4 +8,4 @@ mod writer;
 
 pub use self::provenance::Provenance;
 pub use self::saved::{SavedRun, saved_experiment, saved_json, saved_metrics, saved_provenance, saved_summary};
-pub use self::writer::{Extras, Keeping, Resumed, RunFolder, no_extras};
+pub use self::writer::{ExtraFiles, Extras, Keeping, Resumed, RunFolder, no_extras};

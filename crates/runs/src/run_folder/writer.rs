@@ -64,11 +64,14 @@ pub struct RunFolder {
     fault: Option<PathBuf>,
 }
 
-/// Files to be put into a run before it counts as finished, by name: pictures of it. They see it as it is on the disk.
-pub type Extras<'a> = &'a dyn Fn(&SavedRun) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error + Send + Sync>>;
+/// Files to be put into a run, by name, or why there are none.
+pub type ExtraFiles = Result<Vec<(String, Vec<u8>)>, Box<dyn Error + Send + Sync>>;
+
+/// What gives a run further files, pictures of it, before it counts as finished. It sees the run as it is on the disk.
+pub type Extras<'a> = &'a dyn Fn(&SavedRun) -> ExtraFiles;
 
 /// For a run without further files.
-pub fn no_extras(_: &SavedRun) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error + Send + Sync>> {
+pub fn no_extras(_: &SavedRun) -> ExtraFiles {
     Ok(Vec::new())
 }
 

@@ -7,7 +7,7 @@ use hwasp_problem::{AnyError, AnyProblem, Preset};
 use hwasp_settings::described;
 use thiserror::Error;
 
-use crate::task::{COMMON_KEYS, build};
+use crate::built::{COMMON_KEYS, build};
 
 /// Problems and learners, by name. It is a value that the caller hands over: two can live in one process.
 ///

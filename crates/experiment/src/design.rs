@@ -1,40 +1,11 @@
 //! `[design]`: where each design parameter sits and where it begins.
 
-use hwasp_core::Dimension;
-use hwasp_settings::{Fields, Item, Settings, choice};
+use hwasp_settings::{Fields, Item, Settings};
 
+use crate::group::{Group, Place};
 use crate::initial::{InitialDesign, read_initial};
 use crate::method::Method;
 use crate::placements::{PlacedRange, read_placements, write_placements};
-
-choice! {
-    /// Where a design parameter sits.
-    pub enum Place {
-        /// In the policy's computational graph (`HWasP`).
-        Graph = "graph",
-        /// In the action (HWasP-Minimal).
-        Action = "action",
-        /// Nowhere: it keeps its first value.
-        Fixed = "fixed",
-    }
-}
-
-/// A group of design parameters that a problem has.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Group {
-    /// Its name.
-    pub name: String,
-    /// The index of its first parameter in the design.
-    pub first: usize,
-    /// What it measures.
-    pub dimension: Dimension,
-    /// How many there are.
-    pub count: usize,
-    /// Lower limit of each, SI.
-    pub lo: f64,
-    /// Upper limit of each, SI.
-    pub hi: f64,
-}
 
 /// `[design]`.
 #[derive(Clone, Debug, PartialEq)]

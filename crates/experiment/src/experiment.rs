@@ -3,6 +3,7 @@
 use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
 use hwasp_settings::{Faults, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
 
+use crate::built::MOST_STEPS;
 use crate::catalogue::Catalogue;
 use crate::controller::ControllerSettings;
 use crate::design::DesignSettings;
@@ -10,7 +11,7 @@ use crate::learner::LearnerSettings;
 use crate::method::Method;
 use crate::noise::NoiseSettings;
 use crate::search::SearchSettings;
-use crate::task::{MOST_STEPS, Task};
+use crate::task::Task;
 use crate::train::TrainSettings;
 
 /// The longest name of an experiment, characters.

@@ -4,7 +4,7 @@ use hwasp_core::{Dimension, Initial};
 use hwasp_settings::text::{shorten, show};
 use hwasp_settings::{Item, Keys, Node, Section, Value, listed, nearest, with_unit};
 
-use crate::design::Group;
+use crate::group::Group;
 
 /// Where the parameters begin.
 #[derive(Clone, Debug, PartialEq)]

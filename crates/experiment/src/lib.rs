@@ -6,10 +6,12 @@
 
 #![forbid(unsafe_code)]
 
+mod built;
 mod catalogue;
 mod controller;
 mod design;
 mod experiment;
+mod group;
 mod initial;
 mod learner;
 mod load;
@@ -21,10 +23,12 @@ mod search;
 mod task;
 mod train;
 
+pub use built::MOST_STEPS;
 pub use catalogue::{Catalogue, CatalogueError};
 pub use controller::{ActivationKind, ControllerSettings};
-pub use design::{DesignSettings, Group, Place};
+pub use design::DesignSettings;
 pub use experiment::{Experiment, resolve};
+pub use group::{Group, Place};
 pub use hwasp_settings::{Choice, Excerpt, Fault, Faults, LONGEST_FILE, Layers};
 pub use initial::{InitialDesign, InitialValue};
 pub use learner::LearnerSettings;
@@ -34,5 +38,5 @@ pub use noise::NoiseSettings;
 pub use placements::PlacedRange;
 pub use reference::{reference, schema};
 pub use search::{Score, SearchSettings};
-pub use task::{MOST_STEPS, Task};
+pub use task::Task;
 pub use train::TrainSettings;

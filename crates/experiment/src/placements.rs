@@ -5,7 +5,7 @@ use std::ops::Range;
 use hwasp_settings::text::shorten;
 use hwasp_settings::{Item, Keys, Node, Section, Value};
 
-use crate::design::{Group, Place};
+use crate::group::{Group, Place};
 
 /// Parameters that sit elsewhere than the others.
 #[derive(Clone, Debug, PartialEq, Eq)]

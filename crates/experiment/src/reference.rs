@@ -8,6 +8,7 @@ use hwasp_core::Dimension;
 use hwasp_settings::{Field, Kind, described, object_schema};
 use serde_json::{Map, Value, json};
 
+use crate::built::MOST_STEPS;
 use crate::catalogue::Catalogue;
 use crate::controller::ControllerSettings;
 use crate::design::DesignSettings;
@@ -16,7 +17,6 @@ use crate::learner::LearnerSettings;
 use crate::method::Method;
 use crate::noise::NoiseSettings;
 use crate::search::SearchSettings;
-use crate::task::MOST_STEPS;
 use crate::train::TrainSettings;
 
 /// Rows of an iteration, for defaults that depend on them.

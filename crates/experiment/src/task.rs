@@ -4,20 +4,12 @@ use std::fmt;
 use std::sync::Arc;
 
 use hwasp_core::Dimension;
-use hwasp_problem::{AnyError, AnyProblem, Built};
+use hwasp_problem::{AnyProblem, Built};
 use hwasp_settings::{AnySettings, Item, Keys, Section, described, listed, read, written};
 
+use crate::built::{COMMON_KEYS, MOST_STEPS, build};
 use crate::catalogue::Catalogue;
-use crate::design::Group;
-
-/// The longest episode, steps.
-pub const MOST_STEPS: usize = 100_000;
-/// Keys of `[task]` that every problem has.
-pub(crate) const COMMON_KEYS: [&str; 2] = ["problem", "horizon"];
-/// Columns of a learning curve that are not a design group's.
-const COLUMNS: [&str; 5] = ["iteration", "env_steps", "wall_s", "discounted_return", "return"];
-/// The longest name of a design group, bytes.
-const LONGEST_NAME: usize = 58;
+use crate::group::Group;
 
 /// `[task]`: a problem with its settings, built.
 #[derive(Clone)]
@@ -130,42 +122,6 @@ fn refuse_foreign(section: &mut Section<'_>, problem: &dyn AnyProblem, catalogue
     for (key, owners) in foreign {
         section.refuse(&key, &format!("it is for problem = {}, and this is {}", owners.join(" or "), problem.name()));
     }
-}
-
-/// Builds a problem and checks what experiments rely on.
-pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Result<Built, AnyError> {
-    let built = problem.build(settings)?;
-    let (env, groups) = (&built.training.env, built.training.law.design().groups());
-    if groups.is_empty() {
-        return Err("the law has no design parameter, so that there is nothing to design".into());
-    }
-    if built.optimum.len() != groups.len() {
-        let (given, needed) = (built.optimum.len(), groups.len());
-        return Err(format!("the optimum of {given} design groups is given, but there are {needed}").into());
-    }
-    if env.effort.iter().any(|port| port.dimension != env.effort[0].dimension) {
-        return Err("its efforts measure different things; the exploration of efforts has one size for all".into());
-    }
-    if !(1..=MOST_STEPS).contains(&env.horizon) {
-        return Err(format!("its horizon is {} steps, not between 1 and {MOST_STEPS}", env.horizon).into());
-    }
-    for group in groups {
-        check_group(&group.name)?;
-    }
-    Ok(built)
-}
-
-/// Whether a design group can name a column of a learning curve.
-fn check_group(name: &str) -> Result<(), AnyError> {
-    let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-    let why = if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
-        format!("use 1 to {LONGEST_NAME} letters, digits, `_` and `-`")
-    } else if COLUMNS.contains(&name) {
-        format!("learning curves have a column of this name, as of {}", listed(COLUMNS))
-    } else {
-        return Ok(());
-    };
-    Err(format!("the design group `{}` cannot be called so: {why}", hwasp_settings::text::shorten(name, 60)).into())
 }
 
 impl PartialEq for Task {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use hwasp_core::{Law, MakeEnvironment};
 
-use crate::AnyError;
+use crate::error::AnyError;
 use crate::mechanism::Mechanism;
 use crate::words::Words;
 use crate::world::World;

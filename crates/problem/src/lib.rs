@@ -47,16 +47,15 @@
 #![forbid(unsafe_code)]
 
 mod built;
+mod error;
 mod mechanism;
 mod problem;
 mod words;
 mod world;
 
 pub use built::{Built, StandIn};
+pub use error::AnyError;
 pub use mechanism::Mechanism;
 pub use problem::{AnyProblem, Preset, Problem};
 pub use words::{Role, Words};
 pub use world::World;
-
-/// Whatever a problem finds wrong.
-pub type AnyError = Box<dyn std::error::Error + Send + Sync>;

@@ -2,7 +2,8 @@
 
 use hwasp_settings::{AnySettings, Settings};
 
-use crate::{AnyError, Built};
+use crate::built::Built;
+use crate::error::AnyError;
 
 /// An experiment that comes with a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use hwasp_core::{EnvSpec, Environment, Initial, Law, MakeEnvironment};
 
-use crate::AnyError;
+use crate::error::AnyError;
 
 /// A mechanism in a world: its law, and environments for it.
 #[derive(Clone)]

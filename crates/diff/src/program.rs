@@ -13,17 +13,16 @@ mod interpret;
 mod jvp;
 mod lanes;
 mod lower;
-pub(crate) mod ops;
 mod plan;
 mod tape;
 mod vjp;
 
 use crate::Float;
+use crate::ops::{Binary, Unary};
 use crate::trace::{Node, Tape, Var};
 use plan::ReversePlan;
 
 pub use interpret::Interpreter;
-pub use ops::{Binary, Unary};
 pub use tape::ProgramTape;
 
 /// Where a value lives while a program runs.

@@ -7,7 +7,7 @@ use std::iter::Sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::Scalar;
-use crate::program::ops::{Binary, Unary};
+use crate::ops::{Binary, Unary};
 
 /// What an instruction reads: a constant (by its bits, so that it can be compared) or an earlier node of the tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -54,7 +54,7 @@ pub(super) fn mark(edge: &Edge, graph: &Graph, to: usize, position: usize) -> St
     if edge.minus {
         mark.push('−');
     }
-    if node.kind == Kind::Binary(crate::program::ops::Binary::Div) && position == 1 {
+    if node.kind == Kind::Binary(crate::ops::Binary::Div) && position == 1 {
         mark.push_str("divisor");
     }
     if let [first, .., last] = edge.only[..] {

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::names::{self, labelled};
 use super::{GraphStyle, simplify};
 use crate::Program;
-use crate::program::ops::{Binary, Unary};
+use crate::ops::{Binary, Unary};
 use crate::program::{Instruction, Slot};
 
 /// What a node stands for.

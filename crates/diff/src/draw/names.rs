@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::GraphStyle;
-use crate::program::ops::{Binary, Unary};
+use crate::ops::{Binary, Unary};
 
 /// `stiffness[3]` is member 3 of the group `stiffness`.
 pub(super) fn member(name: &str) -> Option<(&str, usize)> {

@@ -2,7 +2,7 @@
 
 use super::graph::{Edge, Graph, Kind, Node};
 use super::names::number;
-use crate::program::ops::{Binary, Unary};
+use crate::ops::{Binary, Unary};
 
 /// Merges chains of sums, products, minima and maxima, recognises clamps, and drops what is no longer used.
 pub(super) fn simplify(graph: Graph) -> Graph {

@@ -3,10 +3,10 @@
 use pulp::NullaryFnOnce;
 
 use super::lanes::{Operand, Rows, map1, map2};
-use super::ops::{Binary, Unary, with_binary, with_unary};
 use super::tape::Values;
 use super::{Instruction, Program, ProgramTape, check_batch};
 use crate::Float;
+use crate::ops::{Binary, Unary, with_binary, with_unary};
 
 impl Program {
     /// Runs the row instructions over `rows` rows of `columns` [C × rows] and writes the outputs into `out` [O × rows].

@@ -2,8 +2,8 @@
 
 use std::marker::PhantomData;
 
-use super::ops::{Binary, Unary};
 use super::{Instruction, Program, Slot};
+use crate::ops::{Binary, Unary};
 use crate::{Scalar, Var};
 
 /// What the steps of a program mean to a reader: names in the text of another language, say, or numbers of another kind.

@@ -3,10 +3,10 @@
 use pulp::NullaryFnOnce;
 
 use super::lanes::{Lane, Operand, Rows, Same, put};
-use super::ops::{Binary, Unary, with_binary, with_unary};
 use super::tape::Values;
 use super::{Instruction, Program, ProgramTape, Slot, check_batch};
 use crate::Float;
+use crate::ops::{Binary, Unary, with_binary, with_unary};
 
 impl Program {
     /// Pushes tangents through the row instructions: `column_tangent` [C × rows] and the tangents of the last

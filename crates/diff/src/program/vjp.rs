@@ -3,11 +3,11 @@
 use pulp::NullaryFnOnce;
 
 use super::lanes::{Lane, Operand, Rows, Same, put, sum};
-use super::ops::{Binary, Unary, with_binary, with_unary};
 use super::plan::Deposit;
 use super::tape::Values;
 use super::{Instruction, Program, ProgramTape, Slot, check_batch};
 use crate::Float;
+use crate::ops::{Binary, Unary, with_binary, with_unary};
 
 impl Program {
     /// Pulls `out_cotangent` [O × rows] back through the row instructions: OVERWRITES `column_cotangent` [C × rows] and

@@ -1,8 +1,8 @@
 //! Trainings: the assembly of an experiment, the loops that learn and search, evaluation and statistics.
 //!
-//! A program that embeds training needs three calls: [`resolve`](hwasp_experiment::resolve) an experiment,
-//! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`]; who runs episodes is
-//! a [`Collector`].
+//! A program that embeds training makes three calls: [`resolve`](hwasp_experiment::resolve) for the experiment,
+//! [`Assembly::new`], [`train`]. An [`Observer`] is told what happens on the way. A [`Collector`] runs the episodes: threads
+//! of this process, or [`Worker`]s elsewhere.
 
 #![forbid(unsafe_code)]
 

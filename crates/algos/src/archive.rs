@@ -212,7 +212,11 @@ impl<'a> Exchange<'a> {
                 let mut read = String::with_capacity(codes.len());
                 for &code in codes {
                     let Some(character) = u32::try_from(code).ok().and_then(char::from_u32) else {
-                        return Err(StateError::Value { name, value: code as f64, limits: "the number of a character" });
+                        return Err(StateError::Value {
+                            name,
+                            value: code as f64,
+                            limits: "the number of a character",
+                        });
                     };
                     read.push(character);
                 }

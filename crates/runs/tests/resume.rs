@@ -13,7 +13,9 @@ use hwasp_experiment::Experiment;
 use hwasp_runs::checkpoint::{decode, encode};
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun, no_extras, replay};
 use hwasp_testing::{KINDS, Keeper, Stopper, catalogue, executor, run, small, spoil, told};
-use hwasp_training::{Assembly, Event, FailedIteration, Observer, TrainError, params_at, train, train_from};
+use hwasp_training::{
+    Assembly, Event, FailedIteration, MetricsRow, Observer, TrainError, params_at, train, train_from,
+};
 
 fn empty(name: &str) -> PathBuf {
     hwasp_testing::empty(env!("CARGO_TARGET_TMPDIR"), name)
@@ -312,12 +314,13 @@ fn the_curve_of_an_earlier_version_goes_on() {
     drop(folder);
     let table = SavedRun::open(&path, catalogue()).unwrap().metrics().unwrap();
     assert_eq!(table.learner, ["kl", "entropy", "clip_fraction", "grad_norm", "epochs"]);
-    let mut earlier = "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,gear\n".to_owned();
-    for row in &table.rows {
+    let line = |row: &MetricsRow| {
         let values = [row.wall_s, row.discounted_return, row.undiscounted_return, row.learner[0], row.learner[1], 1.0];
         let values = values.iter().chain(&row.design_totals).map(|value| format!(",{value:?}"));
-        earlier += &format!("{},{}{}\n", row.iteration, row.env_steps, values.collect::<String>());
-    }
+        format!("{},{}{}\n", row.iteration, row.env_steps, values.collect::<Vec<_>>().concat())
+    };
+    let header = "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,gear\n".to_owned();
+    let earlier = header + &table.rows.iter().map(line).collect::<Vec<_>>().concat();
     fs::write(path.join("metrics.csv"), earlier).unwrap();
 
     let Resumed { mut folder, found } = RunFolder::resume(&path, &spec, provenance(&spec), always()).unwrap();

@@ -125,7 +125,14 @@ struct Prepared {
     text: ExperimentText,
     assembly: Assembly,
     /// The last one first. Each has policy and idle environments of its own.
-    samplers: Mutex<Vec<(Stage, Option<usize>, Arc<Sampler>)>>,
+    samplers: Mutex<Vec<KeptSampler>>,
+}
+
+/// Runs the episodes of one stage that take so many steps.
+struct KeptSampler {
+    stage: Stage,
+    steps: Option<usize>,
+    sampler: Arc<Sampler>,
 }
 
 impl Prepared {
@@ -136,15 +143,15 @@ impl Prepared {
     /// What runs episodes on a stage with these parameters.
     fn sampler(&self, stage: &Stage, steps: Option<usize>, params: &[f32]) -> Result<Arc<Sampler>, CollectError> {
         let mut samplers = self.samplers.lock().expect(UNPOISONED);
-        let known = samplers.iter().position(|(of, cut, _)| of == stage && *cut == steps);
+        let known = samplers.iter().position(|kept| kept.stage == *stage && kept.steps == steps);
         if let Some(at) = known {
             samplers[..=at].rotate_right(1);
         } else {
-            let sampler = self.make(stage, steps).map_err(|error| setup(&error))?;
+            let sampler = Arc::new(self.make(stage, steps).map_err(|error| setup(&error))?);
             samplers.truncate(KEPT - 1);
-            samplers.insert(0, (stage.clone(), steps, Arc::new(sampler)));
+            samplers.insert(0, KeptSampler { stage: stage.clone(), steps, sampler });
         }
-        let sampler = Arc::clone(&samplers[0].2);
+        let sampler = Arc::clone(&samplers[0].sampler);
         let (found, wanted) = (params.len(), sampler.policy().param_count());
         if found != wanted {
             return Err(setup(&StateError::Length { name: "params".into(), found, wanted }));

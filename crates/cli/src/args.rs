@@ -527,8 +527,7 @@ pub(crate) struct InitArgs {
     /// Its name as a Rust package [default: the folder's]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    /// The checkout of hwasp that it is built with [default: the one that this program was built in, or else the repository on
-    /// the network]
+    /// The checkout of hwasp that it is built with [default: the one that this program was built in]
     #[arg(long, value_name = "CHECKOUT", value_parser = path())]
     pub(crate) path: Option<PathBuf>,
 }

@@ -111,7 +111,9 @@ fn of_run(error: &RunError) -> Option<String> {
         RunError::OtherMachine { path, .. } => {
             let experiment = path.join(EXPERIMENT);
             let train = format!("`hwasp train {} --set KEY=VALUE --out FOLDER` trains one", experiment.display());
-            format!("set what belongs to its world: objects, starts, disturbances, rewards; for another machine {train}")
+            format!(
+                "set what belongs to its world: objects, starts, disturbances, rewards; for another machine {train}"
+            )
         }
         RunError::Policy { path, source: PolicyFileError::Tensor { .. } } => {
             let how = "it belongs to another run, or experiment.toml or --set ask for another policy";

@@ -79,7 +79,9 @@ fn purpose(table: &str) -> &'static str {
     match table {
         "design" => "Where each design parameter sits and begins: [hardware.md](hardware.md) says what the places do.",
         "noise" => "The Gaussian noise by which training explores.",
-        "learner" => "What the methods `hwasp`, `minimal` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`.",
+        "learner" => {
+            "What the methods `hwasp`, `minimal` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`."
+        }
         "baseline" => "What estimates values beside the learner.",
         "search" => "For the methods `cmaes`, `ars`, `cmaes-rl` and `ars-rl`.",
         "cmaes" => "For the methods `cmaes` and `cmaes-rl`.",

@@ -70,7 +70,8 @@ impl TensorBoard {
         let now = if latest < now() { now() } else { latest + 1.0 };
         let path = folder.join(format!("{PREFIX}{now:.6}.hwasp"));
         let file = File::create_new(&path).map_err(|source| TensorBoardError { path: path.clone(), source })?;
-        let mut board = Self { path, file, length: 0, totals: Vec::new(), env_steps: 0, wall_time: now, failing: false };
+        let mut board =
+            Self { path, file, length: 0, totals: Vec::new(), env_steps: 0, wall_time: now, failing: false };
         board.write(&version(now))?;
         Ok(board)
     }
@@ -157,7 +158,8 @@ fn latest(folder: &Path) -> io::Result<f64> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name();
-        let stamp = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(".hwasp")?.parse::<f64>().ok());
+        let stamp =
+            name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(".hwasp")?.parse::<f64>().ok());
         // Other files say nothing about this training.
         let Some(begun) = stamp.filter(|stamp| stamp.is_finite()) else { continue };
         let written = entry.metadata()?.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());

@@ -64,6 +64,9 @@ mod tests {
         let text = "Ten parallel springs under 0.3 kg, with the paper's settings";
         assert_eq!(wrapped(text, 30), ["Ten parallel springs under 0.3", "kg, with the paper's settings"]);
         assert_eq!(wrapped(text, usize::MAX), [text]);
-        assert_eq!(wrapped("a-word-that-is-longer-than-its-line and", 24), ["a-word-that-is-longer-than-its-line", "and"]);
+        assert_eq!(
+            wrapped("a-word-that-is-longer-than-its-line and", 24),
+            ["a-word-that-is-longer-than-its-line", "and"]
+        );
     }
 }

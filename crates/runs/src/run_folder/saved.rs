@@ -45,7 +45,8 @@ impl SavedRun {
             let trained = assembly(&[])?;
             if let Some(what) = trained.other_machine(&asked) {
                 // The first of them after which it is another one; a part of them may be no experiment by itself.
-                let other = |i: &usize| assembly(&assignments[..=*i]).is_ok_and(|a| trained.other_machine(&a).is_some());
+                let other =
+                    |i: &usize| assembly(&assignments[..=*i]).is_ok_and(|a| trained.other_machine(&a).is_some());
                 let at = (0..assignments.len()).find(other).unwrap_or(assignments.len() - 1);
                 let assignment = shorten(&assignments[at], 120);
                 return Err(RunError::OtherMachine { path: path.to_owned(), assignment, what });

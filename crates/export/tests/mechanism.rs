@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hwasp_export::{ExportError, Kind, Source, export};
-use hwasp_testing::{empty, small};
+use hwasp_testing::{catalogue, empty, small};
 use hwasp_workshop::design::DesignReport;
 use resvg::usvg::roxmltree::{Document, Node};
 
@@ -19,12 +19,12 @@ fn shipped(name: &str) -> PathBuf {
 /// Exports of a shipped run, into an empty folder.
 fn exported(run: &str, kinds: &[Kind], folder: &str) -> PathBuf {
     let folder = empty(env!("CARGO_TARGET_TMPDIR"), folder);
-    export(&Source::open(&shipped(run)).unwrap(), kinds, None, &folder).unwrap();
+    export(&Source::open(&shipped(run), catalogue()).unwrap(), kinds, None, &folder).unwrap();
     folder
 }
 
 fn design(run: &str) -> Vec<f64> {
-    DesignReport::open(&shipped(run)).unwrap().groups.iter().map(|group| group.group.as_built[0]).collect()
+    DesignReport::open(&shipped(run), catalogue()).unwrap().groups.iter().map(|group| group.group.as_built[0]).collect()
 }
 
 fn number(node: Node<'_, '_>, key: &str) -> f64 {
@@ -39,7 +39,7 @@ fn the_written_model_grasps_as_the_run_does() {
     use hwasp_training::{evaluate_in, evaluate_native};
 
     let episodes = if std::env::var_os("HWASP_EXHAUSTIVE").is_some() { 400 } else { 32 };
-    let saved = SavedRun::open(&shipped("z-grasp")).unwrap();
+    let saved = SavedRun::open(&shipped("z-grasp"), catalogue()).unwrap();
     let (params, seed) = (saved.params().unwrap(), saved.assembly().experiment().train.evaluation_seed);
     let executor = Threads::new(2).unwrap();
     let native = evaluate_native(saved.assembly(), &params, (episodes, seed), &executor).unwrap();
@@ -96,7 +96,7 @@ fn a_run_without_a_hand_has_no_mechanism() {
     let spec = small("hwasp", &[]);
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join("experiment.toml"), spec.to_toml().unwrap()).unwrap();
-    let source = Source::open(&folder).unwrap();
+    let source = Source::open(&folder, catalogue()).unwrap();
     for kind in MECHANISM {
         assert!(!kind.is_of(source.spec()));
         let error = export(&source, &[kind], None, &folder.join("export")).unwrap_err();
@@ -104,5 +104,5 @@ fn a_run_without_a_hand_has_no_mechanism() {
         assert!(error.to_string().starts_with(&format!("reach has no mechanism to write as {}", kind.name())));
     }
     assert!(Kind::Onnx.is_of(source.spec()) && !folder.join("export").exists());
-    assert!(Kind::ALL.iter().all(|kind| kind.is_of(Source::open(&shipped("z-grasp")).unwrap().spec())));
+    assert!(Kind::ALL.iter().all(|kind| kind.is_of(Source::open(&shipped("z-grasp"), catalogue()).unwrap().spec())));
 }

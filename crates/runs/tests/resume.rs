@@ -20,7 +20,7 @@ fn empty(name: &str) -> PathBuf {
 }
 
 fn provenance(spec: &Experiment) -> Provenance {
-    Provenance::new(vec!["test".into()], 1, spec.seed)
+    Provenance::new(vec!["test".into()], 1.seed)
 }
 
 /// At every moment at which a checkpoint can be had: between iterations, between generations, within a generation, and
@@ -138,7 +138,7 @@ fn stopped(name: &str) -> (PathBuf, Experiment, Assembly) {
     let mut stopper = Stopper { inner: &mut folder, stop: &stop, after: 2 };
     let error = train(&assembly, &Serial, &mut stopper, &stop).unwrap_err();
     assert!(matches!(error, TrainError::Interrupted { env_steps: 2400, budget: 9600 }), "{error}");
-    (path, spec, assembly)
+    (path, assembly)
 }
 
 #[test]
@@ -150,12 +150,15 @@ fn an_unfinished_run_can_be_evaluated_at_its_newest_checkpoint() {
         let stop = AtomicBool::new(false);
         let mut stopper = Stopper { inner: &mut folder, stop: &stop, after: 3 };
         train(&assembly, &Serial, &mut stopper, &stop).unwrap_err();
-        let params = SavedRun::open(&path).unwrap().params().unwrap();
+        let params = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().params().unwrap();
         assert_eq!(params.len(), assembly.init().len());
         let moved = params != assembly.init();
         // Whether the first candidate was scored by then is another matter.
         assert!(moved || assembly.experiment().method.searches(), "{method}");
-        assert!(matches!(SavedRun::open(&path).unwrap().summary(), Err(RunError::Unfinished { .. })));
+        assert!(matches!(
+            SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().summary(),
+            Err(RunError::Unfinished { .. })
+        ));
     }
 }
 
@@ -176,7 +179,7 @@ fn a_damaged_newest_checkpoint_costs_the_steps_since_the_one_before() {
     assert_eq!(told(&trained), told(&run(&assembly, None, 1).0));
     assert!(path.join("checkpoints/iteration-00000002.damaged").is_file());
     assert!(path.join("metrics.damaged").is_file());
-    assert_eq!(SavedRun::open(&path).unwrap().metrics().unwrap().rows[0].iteration, 1);
+    assert_eq!(SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().metrics().unwrap().rows[0].iteration, 1);
 }
 
 #[test]
@@ -223,7 +226,7 @@ fn a_run_without_checkpoints_begins_from_the_beginning() {
     assert!(found.checkpoint.is_none() && found.damaged.is_empty());
     let trained = train_from(None, &assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
     folder.finish(&assembly, &trained, &no_extras).unwrap();
-    assert_eq!(SavedRun::open(&path).unwrap().metrics().unwrap().rows.len(), 8);
+    assert_eq!(SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().metrics().unwrap().rows.len(), 8);
 }
 
 #[test]

@@ -9,11 +9,11 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
 use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid, Watch};
-use hwasp_training::{Event, TrainError, spec};
+use hwasp_training::{Event, TrainError};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
     let settings = [("train.evaluation_episodes", "20"), ("train.env_steps", "12000"), ("ppo.clip_ratio", clip)];
-    let layers = settings.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = settings.iter().fold(hwasp_testing::layers("reach"), |layers, (k, v)| layers.with_override(k, v));
     Grid { layers, contenders: methods.iter().map(|m| Contender::parse(m).unwrap()).collect(), seeds: 0..3 }
 }
 

@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_experiment::{EXPERIMENTS, Experiment, InitialDesign, Layers, Method, Place, Problem, load, resolve};
+use hwasp_algos::PpoConfig;
+use hwasp_experiment::{Experiment, InitialDesign, Layers, Method, Place};
+use hwasp_tasks::mass_spring::StiffnessTask;
+use hwasp_testing::{catalogue, layers as load, resolve};
 use proptest::prelude::*;
 
 /// What a run folder keeps has to give the same experiment again.
@@ -15,10 +18,11 @@ fn read_back(spec: &Experiment) -> Experiment {
 
 #[test]
 fn every_experiment_resolves_for_every_method_and_is_read_back() {
-    for (name, _) in EXPERIMENTS {
+    for preset in catalogue().presets() {
+        let name = preset.name;
         for (method, expected) in Method::ALL {
-            let spec = resolve(load(name).unwrap(), Some(method)).unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert_eq!(spec.name, *name, "the file is called what its experiment is");
+            let spec = resolve(load(name), Some(method)).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(spec.name, name, "the file is called what its experiment is");
             assert_eq!(spec.method, *expected);
             assert_eq!(read_back(&spec), spec);
         }
@@ -27,9 +31,9 @@ fn every_experiment_resolves_for_every_method_and_is_read_back() {
 
 #[test]
 fn the_resolved_file_says_everything() {
-    let spec = resolve(load("paper/bar-length").unwrap(), None).unwrap();
+    let spec = resolve(load("paper/bar-length"), None).unwrap();
     insta::assert_snapshot!("resolved_paper_bar_length", spec.to_toml().unwrap());
-    let reach = resolve(load("reach").unwrap().with_override("design.initial", "0.7"), Some("fixed")).unwrap();
+    let reach = resolve(load("reach").with_override("design.initial", "0.7"), Some("fixed")).unwrap();
     insta::assert_snapshot!("resolved_reach_fixed", reach.to_toml().unwrap());
 }
 
@@ -37,7 +41,7 @@ fn the_resolved_file_says_everything() {
 #[test]
 fn trpo_discounts_as_ppo_does_unless_it_is_told_otherwise() {
     let spec = |settings: &[&str]| {
-        let layers = load("pendulum").unwrap().with_assignment("learner.algorithm = trpo");
+        let layers = load("pendulum").with_assignment("learner.algorithm = trpo");
         resolve(settings.iter().fold(layers, |layers, s| layers.with_assignment(s)), None).unwrap()
     };
     let plain = spec(&[]);
@@ -64,7 +68,6 @@ fn later_layers_win() {
 #[test]
 fn options_need_no_quotes() {
     let layers = load("mass-spring")
-        .unwrap()
         .with_assignment("noise.effort=2500 mN")
         .with_assignment("task.effort_clip=5 N")
         .with_assignment("design.placements.stiffness[2..4]=action")
@@ -89,8 +92,8 @@ fn an_absent_limit_can_be_asked_for() {
         Problem::Stiffness(problem) => problem.base.effort_clip,
         other => panic!("{other:?}"),
     };
-    assert_eq!(clip(load("paper/mass-spring").unwrap()), Some(5.0));
-    assert_eq!(clip(load("paper/mass-spring").unwrap().with_assignment("task.effort_clip=none")), None);
+    assert_eq!(clip(load("paper/mass-spring")), Some(5.0));
+    assert_eq!(clip(load("paper/mass-spring").with_assignment("task.effort_clip=none")), None);
 }
 
 #[test]
@@ -229,7 +232,7 @@ proptest! {
         ],
         value in prop_oneof![any::<String>(), "[0-9\\[\\]\"'a-zN/., {}=-]{0,20}"],
     ) {
-        let layers = load("mass-spring").unwrap().with_override(&key, &value).with_assignment(&value);
+        let layers = load("mass-spring").with_override(&key, &value).with_assignment(&value);
         match resolve(layers, None) {
             Ok(spec) => prop_assert_eq!(read_back(&spec), spec),
             Err(errors) => prop_assert!(!errors.to_string().is_empty()),

@@ -73,7 +73,7 @@ impl Kind {
             Self::Choice(names) => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
             Self::Names(names) => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
             Self::Optional(kind) => kind.limits(),
-            Self::List { of, length: [_, most], .. } if *most < usize::MAX => {
+            Self::List { of, length: [_, most], single: false } if *most < usize::MAX => {
                 format!("up to {most} of {}", of.limits())
             }
             Self::List { of, .. } => of.limits(),

@@ -9,25 +9,30 @@ use crate::sandbox::Sandbox;
 #[test]
 fn another_machine_is_no_other_world() {
     let sandbox = Sandbox::new("another-machine");
-    let line = "train mass-spring --env-steps 4000 --set train.evaluation_episodes=2 --quiet --out run";
-    assert!(sandbox.run(line).status.success());
+    for (experiment, out) in [("mass-spring", "run"), ("bar-length", "bar")] {
+        let line = format!("train {experiment} --env-steps 4000 --set train.evaluation_episodes=2 --quiet --out {out}");
+        assert!(sandbox.run(&line).status.success());
+    }
+    let refused = |run: &str, setting: &str, what: &str| {
+        // Behind one that is no fault: the message names the one that is.
+        let output = sandbox.run(&format!("eval {run} --episodes 2 --set task.goal=0.3m --set {setting}"));
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{setting}: {told}");
+        let message = format!("error: --set {setting} changes {what}: {run} was trained for another machine\n");
+        assert!(told.starts_with(&message), "{told}");
+    };
+    refused("bar", "task.interface_stiffness=100N/m", "the law");
     for (setting, what) in [
         ("task.stiffness_total_max=200N/m", "the design's parameters or their limits"),
         ("task.segments=11", "the design's parameters or their limits"),
         ("task.motor_limit=6N", "the motors or their limits"),
-        ("task.bar=0.2m", "the law"),
         ("task.problem=bar-length", "the problem"),
         ("controller.hidden=[8]", "the controller's network"),
         ("controller.observation_scale=[0.2,0.5]", "how the controller sees what it observes"),
         ("design.placement=fixed", "where the design's parameters sit, or the values of those that are fixed"),
         ("noise.train=false", "which parameters the policy has"),
     ] {
-        // Behind one that is no fault: the message names the one that is.
-        let output = sandbox.run(&format!("eval run --episodes 2 --set task.goal=0.3m --set {setting}"));
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{setting}: {told}");
-        let message = format!("error: --set {setting} changes {what}: run was trained for another machine\n");
-        assert!(told.starts_with(&message), "{told}");
+        refused("run", setting, what);
     }
 }
 

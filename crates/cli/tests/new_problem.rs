@@ -205,6 +205,6 @@ fn every_command_works(folder: &Path) {
     hwasp("report compared");
     has(&["compared/report.html"]);
     for method in ["fixed", "cmaes", "ars"] {
-        hwasp(&format!("check winch.toml --method {method} --env-steps 1e6"));
+        hwasp(&format!("check winch.toml --method {method} --set train.env_steps=1e6"));
     }
 }

@@ -26,7 +26,6 @@ fn another_machine_is_no_other_world() {
         ("task.stiffness_total_max=200N/m", "the design's parameters or their limits"),
         ("task.segments=11", "the design's parameters or their limits"),
         ("task.motor_limit=6N", "the motors or their limits"),
-        ("task.problem=bar-length", "the problem"),
         ("controller.hidden=[8]", "the controller's network"),
         ("controller.observation_scale=[0.2,0.5]", "how the controller sees what it observes"),
         ("design.placement=fixed", "where the design's parameters sit, or the values of those that are fixed"),

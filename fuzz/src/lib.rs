@@ -67,14 +67,14 @@ static TRAININGS: LazyLock<Vec<(Assembly, Vec<Checkpoint>)>> = LazyLock::new(|| 
     KINDS.iter().map(train).collect()
 });
 
-/// An experiment file: faults, or a `Spec` whose own file gives it again.
+/// An experiment file: faults, or an `Experiment` whose own file gives it again.
 pub fn experiment(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let read = |text: &str| Layers::from_text("fuzz.toml", text).and_then(|layers| spec::resolve(layers, None));
+    let read = |text: &str| Layers::from_text("fuzz.toml", text).and_then(|layers| resolve(layers, None, &CATALOGUE));
     match read(text) {
-        Ok(spec) => {
-            let written = spec.to_toml().expect("a resolved experiment can be written");
-            assert_eq!(read(&written).expect("what was written resolves"), spec, "{written}");
+        Ok(experiment) => {
+            let written = experiment.to_toml().expect("a resolved experiment can be written");
+            assert_eq!(read(&written).expect("what was written resolves"), experiment, "{written}");
         }
         Err(faults) => assert!(!faults.to_string().is_empty()),
     }

@@ -78,7 +78,8 @@ mod grasps {
     use hwasp_training::{Assembly, evaluate, evaluate_native};
 
     fn trained() -> SavedRun {
-        SavedRun::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp")).unwrap()
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp");
+        SavedRun::open(&folder, hwasp_testing::catalogue()).unwrap()
     }
 
     fn options(first: u64, episodes: u64, native: bool) -> PlayOptions {

@@ -21,7 +21,7 @@ fn empty(name: &str) -> PathBuf {
 }
 
 fn provenance(spec: &Experiment) -> Provenance {
-    Provenance::new(vec!["test".into()], 1.seed)
+    Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 
 /// A further file that is made of the learning curve, as the program's picture is.

@@ -28,7 +28,7 @@ fn empty(name: &str) -> PathBuf {
 }
 
 fn provenance(spec: &Experiment) -> Provenance {
-    Provenance::new(vec!["hwasp".into(), "train".into(), "a \"name\"".into()], 1.seed)
+    Provenance::new(vec!["hwasp".into(), "train".into(), "a \"name\"".into()], 1, spec.seed)
 }
 
 fn run_with(path: &Path, spec: &Experiment, executor: &dyn Executor) -> Summary {
@@ -40,7 +40,7 @@ fn run_with(path: &Path, spec: &Experiment, executor: &dyn Executor) -> Summary 
 }
 
 fn run(path: &Path, spec: &Experiment) -> Summary {
-    run_with(path, &Serial)
+    run_with(path, spec, &Serial)
 }
 
 fn rows(path: &Path) -> Vec<MetricsRow> {
@@ -259,5 +259,8 @@ fn a_run_that_has_not_finished_says_so() {
     RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
     let saved = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap();
     assert!(matches!(saved.params(), Err(RunError::Unfinished { file: "policy.safetensors", .. })));
-    assert!(matches!(SavedRun::open(&path.join("..")), Err(RunError::NotARun { file: "experiment.toml", .. })));
+    assert!(matches!(
+        SavedRun::open(&path.join(".."), hwasp_testing::catalogue()),
+        Err(RunError::NotARun { file: "experiment.toml", .. })
+    ));
 }

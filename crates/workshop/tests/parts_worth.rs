@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Executor, Serial};
-use hwasp_experiment::{Experiment, Place, Problem};
+use hwasp_experiment::{Experiment, Place};
 use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
 use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, train, train_from};
@@ -19,7 +19,7 @@ fn empty(name: &str) -> PathBuf {
 }
 
 fn provenance(spec: &Experiment) -> Provenance {
-    Provenance::new(vec!["test".into()], 1.seed)
+    Provenance::new(vec!["test".into()], 1, spec.seed)
 }
 
 const ASKED: (u64, u64) = (6, 5);
@@ -105,8 +105,7 @@ fn a_controller_is_trained_further_on_parts() {
     let tuning = Tuning::new(&assembly, &params, &snapped.built, 960, ASKED).unwrap();
     let (spec, path) = (tuning.assembly.experiment(), empty("parts-tuned"));
     assert_eq!((spec.design.placement, spec.train.env_steps), (Place::Fixed, 960));
-    let Problem::ZGrasp(task) = &spec.task.problem else { panic!("{:?}".task) };
-    assert_eq!((task.safety_growth, spec.noise.command_final.clone()), ([0.0; 2], None));
+    assert_eq!((spec.train.progress_start, spec.noise.command_final.clone()), (1.0, None));
 
     let TuningFolder::Open(mut folder, from) = tuning.folder(&path, provenance(spec)).unwrap() else { panic!() };
     // It begins with the run's controller on the built hand, and so it is from the first moment on: that is in the folder.

@@ -86,6 +86,13 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
     text
 }
 
+/// Under which values of `--set` a run is judged, as a first line; empty where there are none.
+pub(crate) fn under(assignments: &[String]) -> String {
+    let plain = |(key, value): (&str, &str)| format!("{} = {}", key.trim(), value.trim().trim_matches('"'));
+    let set: Vec<String> = assignments.iter().filter_map(|set| set.split_once('=').map(plain)).collect();
+    if set.is_empty() { String::new() } else { format!("  under {}:\n", set.join(", ")) }
+}
+
 /// An evaluation; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
 pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     let line = |name: &str, m: &MeanInterval| {

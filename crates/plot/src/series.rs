@@ -75,7 +75,12 @@ pub enum Note {
         /// How many rows.
         rows: usize,
     },
-    /// A run without any row that can be drawn.
+    /// A run without any row: it has no curve.
+    Empty {
+        /// The run's label.
+        label: String,
+    },
+    /// A run without any row of a column that can be drawn.
     NoRows {
         /// The run's label.
         label: String,
@@ -108,6 +113,7 @@ impl std::fmt::Display for Note {
             Self::Skipped { label, series, rows } => {
                 write!(f, "{label}: {series} is drawn without {rows} of its rows (not finite, or out of order)")
             }
+            Self::Empty { label } => write!(f, "{label}: the run has no iteration yet, and so no curve"),
             Self::NoRows { label, series } => write!(f, "{label}: no row of {series} can be drawn"),
             Self::Shortened { label, series, shown, longest } => write!(
                 f,
@@ -138,6 +144,14 @@ pub(super) fn shape(
         }
         let raw = drawable(&run.x, values);
         let rows = values.len() - raw.len();
+        if values.is_empty() {
+            // Once, however many panels there are.
+            let empty = Note::Empty { label };
+            if !notes.contains(&empty) {
+                notes.push(empty);
+            }
+            continue;
+        }
         if raw.is_empty() {
             notes.push(Note::NoRows { label, series });
             continue;

@@ -98,6 +98,16 @@ pub enum RunError {
     /// The experiment in it, put together.
     #[error(transparent)]
     Assemble(#[from] AssembleError),
+    /// Another machine than the one that was trained.
+    #[error("--set {assignment} changes {what}: {path} was trained for another machine")]
+    OtherMachine {
+        /// The run folder.
+        path: PathBuf,
+        /// What was set.
+        assignment: String,
+        /// What of the machine is another one for it.
+        what: &'static str,
+    },
     /// The learning curve.
     #[error("{path}: {source}")]
     Metrics {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use hwasp_plot::{Band, Curve, PlotOptions, XAxis, curves, write_plot};
 use hwasp_runs::io_error;
+use hwasp_runs::text::markdown;
 use serde::{Deserialize, Serialize};
 
 use crate::cell::CellResult;
@@ -52,7 +53,7 @@ impl Comparison {
 
     /// The tables as Markdown.
     pub fn markdown(&self) -> String {
-        let mut text = format!("# {}\n\n", self.experiment);
+        let mut text = format!("# {}\n\n", markdown(&self.experiment));
         let groups: Vec<&str> =
             self.methods.first().map_or(vec![], |m| m.design_totals.iter().map(|(g, _)| g.as_str()).collect());
         let _ = write!(text, "| method | seeds | evaluation | area under curve | steps to {:.1} |", self.threshold);

@@ -11,6 +11,7 @@ mod error;
 mod evaluate;
 mod gradient;
 mod learned;
+mod machine;
 mod metrics;
 mod observer;
 mod paired;

@@ -13,10 +13,13 @@ mod experiments;
 mod exports;
 mod folders;
 mod help;
+mod judged;
 mod parts;
 mod pipes;
 mod play;
+mod printable;
 mod projects;
+mod reference;
 mod report;
 #[cfg(unix)]
 mod resume;

@@ -78,6 +78,8 @@ impl Sandbox {
     pub(crate) fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hwasp"));
         command.args(line.split_whitespace()).current_dir(&self.0).env_clear().stdin(Stdio::null());
+        // Without a PATH the system looks for other programs in places of its own.
+        command.env("PATH", "/nowhere");
         command
     }
 

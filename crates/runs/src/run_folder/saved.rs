@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
+use hwasp_settings::text::shorten;
 use hwasp_training::{Assembly, params_at};
 use serde::de::DeserializeOwned;
 
@@ -32,9 +33,26 @@ impl SavedRun {
     }
 
     /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
+    ///
+    /// # Errors
+    /// [`RunError::OtherMachine`] where one of them changes design, law, ports or controller: what was trained is nothing there.
     pub fn open_with(path: &Path, assignments: &[String], catalogue: &Catalogue) -> Result<Self, RunError> {
-        let experiment = saved_experiment(path, assignments, catalogue)?;
-        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&experiment)? })
+        let assembly = |set: &[String]| -> Result<Assembly, RunError> {
+            Ok(Assembly::new(&saved_experiment(path, set, catalogue)?)?)
+        };
+        let asked = assembly(assignments)?;
+        if !assignments.is_empty() {
+            let trained = assembly(&[])?;
+            if let Some(what) = trained.other_machine(&asked) {
+                // The first of them after which it is another one; a part of them may be no experiment by itself.
+                let other =
+                    |i: &usize| assembly(&assignments[..=*i]).is_ok_and(|a| trained.other_machine(&a).is_some());
+                let at = (0..assignments.len()).find(other).unwrap_or(assignments.len() - 1);
+                let assignment = shorten(&assignments[at], 120);
+                return Err(RunError::OtherMachine { path: path.to_owned(), assignment, what });
+            }
+        }
+        Ok(Self { path: path.to_owned(), assembly: asked })
     }
 
     /// Its experiment, ready to run.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use hwasp_runs::text::markdown;
 use hwasp_training::{Change, Evaluation, MeanInterval};
 
 use super::{JointDesign, JointParts, PartsList};
@@ -11,9 +12,11 @@ use super::{JointDesign, JointParts, PartsList};
 pub fn build_sheet(list: &PartsList) -> String {
     let PartsList { experiment, method, seed, catalogue, .. } = list;
     let mut text = format!(
-        "# Parts for {experiment} ({method}, seed {seed})\n\nLengths are in mm, torques in N·mm, angles in degrees. Springs are \
-         of the catalogue `{}` ({} springs).\n\n",
-        catalogue.name, catalogue.springs
+        "# Parts for {} ({method}, seed {seed})\n\nLengths are in mm, torques in N·mm, angles in degrees. Springs are \
+         of the catalogue {} ({} springs).\n\n",
+        markdown(experiment),
+        markdown(&catalogue.name),
+        catalogue.springs
     );
     text.push_str(&shopping(list));
     for joint in &list.joints {
@@ -43,7 +46,7 @@ fn shopping(list: &PartsList) -> String {
         of.push(name);
     }
     for (part, (count, of)) in springs {
-        let _ = writeln!(text, "| spring {part} | {count} | {} |", of.join(", "));
+        let _ = writeln!(text, "| spring {} | {count} | {} |", markdown(part), of.join(", "));
     }
     let _ = writeln!(text, "| axle of {:.2} | {joints} | every joint |", 1e3 * list.bench.axle);
     let _ = writeln!(text, "| line of {:.2} | 3 | thumb and both fingers |", 1e3 * list.bench.line);
@@ -75,7 +78,7 @@ fn joint_table(joint: &JointParts, list: &PartsList) -> String {
             1e3 * pulley.line
         ),
     );
-    row("springs", format!("{} × {}", spring.count, spring.part));
+    row("springs", format!("{} × {}", spring.count, markdown(&spring.part)));
     row("wire", format!("{:.2}", 1e3 * spring.wire));
     row("coil, free", format!("{:.2} outside, {:.2} inside", 1e3 * spring.outer, 1e3 * spring.inner));
     row("turns", format!("{:.2}", spring.turns));

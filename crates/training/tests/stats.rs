@@ -56,7 +56,8 @@ fn mean_error_and_quantiles_are_scipys() {
 #[test]
 fn bootstrap_is_scipys() {
     let many = Bootstrap { resamples: 200_000, ..Bootstrap::default() };
-    let of = |statistic: fn(&Sample) -> f64| many.interval(&sample(&TWELVE), statistic, &mut generator(1)).unwrap().unwrap();
+    let of =
+        |statistic: fn(&Sample) -> f64| many.interval(&sample(&TWELVE), statistic, &mut generator(1)).unwrap().unwrap();
     let (mean, iqm) = (of(Sample::mean), of(Sample::interquartile_mean));
     for (got, expected) in [(mean.low, 0.0083), (mean.high, 1.4417), (iqm.low, -0.05), (iqm.high, 1.5)] {
         assert!((got - expected).abs() < 0.0168, "{got} is not {expected}");

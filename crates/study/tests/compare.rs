@@ -58,7 +58,7 @@ fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, C
 fn figures(cells: &[CellResult]) -> Comparison {
     let mut comparison = Comparison::new("reach", cells, None).unwrap();
     for method in &mut comparison.methods {
-        method.wall_s = 0.0;
+        method.wall_s = None;
     }
     comparison
 }
@@ -116,7 +116,7 @@ fn what_a_comparison_writes() {
     comparison.write(&folder, &cells, &options).unwrap();
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     assert_eq!(read("table.md"), comparison.markdown());
-    assert!(read("table.md").contains("| fixed:0.3 | 3 |"));
+    assert!(read("table.md").contains("| fixed:0.3 | 3 of 3 |"));
     assert_eq!(read("table.csv").lines().count(), 3);
     let json: serde_json::Value = serde_json::from_str(&read("comparison.json")).unwrap();
     // Every first row is above such a threshold.

@@ -1,5 +1,8 @@
 //! The primitive operations: each value and derivative formula stands here, once, for every way of running a program.
 
+// Every loop must end up inside the function that pulp compiles for the widest vector instructions.
+#![allow(clippy::inline_always)]
+
 use crate::Float;
 
 /// A function of one number.

@@ -1,8 +1,8 @@
-//! Comparisons: a grid of methods and seeds under one budget, run in parallel, and what it says.
+//! Comparisons: a grid of methods and seeds under one budget, run in parallel, and its statistics.
 //!
-//! A comparison is a folder. Each cell of the grid is a run folder in it, under `cells/`: a finished one is not run again,
-//! an unfinished one is resumed, one that failed is told with its reason, and one of another experiment is refused. Several
-//! processes may work on one folder.
+//! A comparison is a folder. Each cell of the grid is a run folder under `cells/`. A finished cell stays as it is, an unfinished
+//! one is resumed, one that failed is told with its reason, and one of another experiment is refused. Several processes may work
+//! on one folder.
 
 #![forbid(unsafe_code)]
 

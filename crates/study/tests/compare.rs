@@ -8,12 +8,12 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid, Watch};
-use hwasp_training::{Event, TrainError, spec};
+use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome, Watch};
+use hwasp_training::{Event, TrainError};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
     let settings = [("train.evaluation_episodes", "20"), ("train.env_steps", "12000"), ("ppo.clip_ratio", clip)];
-    let layers = settings.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = settings.iter().fold(hwasp_testing::layers("reach"), |layers, (k, v)| layers.with_override(k, v));
     Grid { layers, contenders: methods.iter().map(|m| Contender::parse(m).unwrap()).collect(), seeds: 0..3 }
 }
 
@@ -50,13 +50,19 @@ impl Watch for Counter {
     }
 }
 
-fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, CompareError> {
-    study::run(&grid.cells(folder)?, &Threads::new(2).unwrap(), &["hwasp".into()], watch, &watch.stop)
+fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Outcome, CompareError> {
+    study::run(
+        &grid.cells(folder, hwasp_testing::catalogue())?,
+        &Threads::new(2).unwrap(),
+        &["hwasp".into()],
+        watch,
+        &watch.stop,
+    )
 }
 
 /// The figures without times.
-fn figures(cells: &[CellResult]) -> Comparison {
-    let mut comparison = Comparison::new("reach", cells, None).unwrap();
+fn figures(outcome: &Outcome) -> Comparison {
+    let mut comparison = Comparison::new("reach", outcome, None).unwrap();
     for method in &mut comparison.methods {
         method.wall_s = None;
     }
@@ -72,14 +78,19 @@ fn a_killed_comparison_goes_on_and_ends_with_the_same_figures() {
 
     let folder = empty("killed");
     let first = Counter { stop_after: Some(2), ..Counter::default() };
-    let finished = run(&grid, &folder, &first).unwrap().len();
+    let finished = run(&grid, &folder, &first).unwrap().finished.len();
     assert!((1..9).contains(&finished), "{finished}");
     // A kill leaves a cell without a summary, or a folder without anything whole.
     let mut cells: Vec<_> = fs::read_dir(folder.join("cells")).unwrap().map(|e| e.unwrap().path()).collect();
     cells.sort();
     let done = cells.iter().find(|cell| cell.join("summary.json").exists()).unwrap();
     fs::remove_file(done.join("summary.json")).unwrap();
-    let never = grid.cells(&folder).unwrap().into_iter().map(|cell| cell.path).find(|path| !path.exists());
+    let never = grid
+        .cells(&folder, hwasp_testing::catalogue())
+        .unwrap()
+        .into_iter()
+        .map(|cell| cell.path)
+        .find(|path| !path.exists());
     let never = never.unwrap();
     fs::create_dir(&never).unwrap();
     fs::write(never.join(".experiment.toml.partial"), "name = ").unwrap();
@@ -102,7 +113,7 @@ fn a_folder_of_another_comparison_is_refused_and_left_alone() {
     let error = run(&grid(&["hwasp"], "0.1"), &folder, &Counter::default()).unwrap_err();
     assert!(matches!(error, CompareError::Other { .. }), "{error}");
     let again = Counter::default();
-    assert_eq!(run(&grid(&["hwasp"], "0.2"), &folder, &again).unwrap().len(), 3);
+    assert_eq!(run(&grid(&["hwasp"], "0.2"), &folder, &again).unwrap().finished.len(), 3);
     assert_eq!(*again.trained.lock().unwrap(), 0);
 }
 
@@ -112,8 +123,8 @@ fn what_a_comparison_writes() {
     let grid = grid(&["hwasp", "fixed:0.3"], "0.2");
     let cells = run(&grid, &folder, &Counter::default()).unwrap();
     let comparison = Comparison::new("reach", &cells, Some(-1e9)).unwrap();
-    let options = grid.cells(&folder).unwrap()[0].plot_options();
-    comparison.write(&folder, &cells, &options).unwrap();
+    let options = grid.cells(&folder, hwasp_testing::catalogue()).unwrap()[0].plot_options();
+    comparison.write(&folder, &cells.finished, &options).unwrap();
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     assert_eq!(read("table.md"), comparison.markdown());
     assert!(read("table.md").contains("| fixed:0.3 | 3 of 3 |"));
@@ -135,5 +146,5 @@ fn contenders_that_are_none() {
         assert!(error.starts_with(told), "{error}");
     }
     let twice = grid(&["hwasp", "hwasp"], "0.2");
-    assert!(matches!(twice.cells(Path::new("nowhere")), Err(CompareError::Twice(_))));
+    assert!(matches!(twice.cells(Path::new("nowhere"), hwasp_testing::catalogue()), Err(CompareError::Twice(_))));
 }

@@ -14,6 +14,7 @@ use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
 pub(crate) use self::budget::FINAL_EPISODES;
+pub use self::budget::Piece;
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;

@@ -19,7 +19,7 @@ mod search;
 pub mod stats;
 mod train;
 
-pub use assemble::{AssembleError, Assembly, total_name};
+pub use assemble::{AssembleError, Assembly, Piece, total_name};
 pub use checkpoint::Checkpoint;
 pub use error::TrainError;
 pub use evaluate::{

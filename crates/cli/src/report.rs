@@ -59,7 +59,11 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         grouped(summary.steps_per_s as u64)
     );
     if let Some(failed) = summary.failed_candidates.filter(|&failed| failed > 0) {
-        let _ = writeln!(text, "  {} candidates failed and ranked last\n", grouped(failed));
+        let _ = writeln!(text, "  {} candidates failed and ranked last", grouped(failed));
+        if let Some(first) = &summary.first_failure {
+            let _ = writeln!(text, "  the first: {first}");
+        }
+        text.push('\n');
     }
     for (name, group) in &summary.design {
         let count = group.values.len();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hwasp_experiment::{Catalogue, Experiment};
 use hwasp_plot::{Band, Curve, IntervalRow, PlotOptions, XAxis, curve_panels, intervals, saved_plot_options};
-use hwasp_runs::text::{Shown, grouped};
+use hwasp_runs::text::{ReadableUnit, grouped};
 use hwasp_runs::{RunError, saved_experiment, saved_provenance};
 use hwasp_study::{CellResult, Comparison, Figure, MethodFigures, Pair, SavedComparison};
 use hwasp_training::stats::{LEAST_VALUES, separation_by_chance};
@@ -328,7 +328,7 @@ fn designs(saved: &SavedComparison) -> Markup {
     let design = saved.cells.first().map(|cell| &cell.summary.design);
     html! {
         @for (name, group) in design.into_iter().flatten() {
-            @let shown = Shown::of(group);
+            @let shown = ReadableUnit::of(group);
             @let what = if group.values.len() == 1 { "" } else { "total " };
             @let with = if shown.unit.is_empty() { String::new() } else { format!(", {}", shown.unit) };
             table {
@@ -348,7 +348,7 @@ fn designs(saved: &SavedComparison) -> Markup {
     }
 }
 
-fn totals(method: &MethodFigures, group: &str, shown: &Shown, optimum: bool) -> Markup {
+fn totals(method: &MethodFigures, group: &str, shown: &ReadableUnit, optimum: bool) -> Markup {
     let totals = method.design_totals.iter().find(|(name, _)| name == group).map_or(&[][..], |(_, totals)| totals);
     let (low, high) = totals.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &t| (l.min(t), h.max(t)));
     let error = method.design_error.iter().find(|(name, _)| name == group);

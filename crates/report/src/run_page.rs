@@ -1,6 +1,6 @@
 //! The report of one run, section by section.
 
-use hwasp_runs::text::{Shown, grouped};
+use hwasp_runs::text::{ReadableUnit, grouped};
 use hwasp_runs::{RunError, Summary};
 
 use crate::page::{KeyFigure, Page};
@@ -30,7 +30,7 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
         figures.push(figure("Success", percent(all.rate()), of));
     }
     for group in run.design.groups.iter().filter(|group| group.group.optimum.is_some()) {
-        let shown = Shown::of(&group.group);
+        let shown = ReadableUnit::of(&group.group);
         let best = group.group.optimum.map_or(String::new(), |best| format!("best known {}", shown.with_unit(best)));
         let label = if group.position.len() == 1 { String::new() } else { "Total ".to_owned() };
         let label = label + &words::spaced(&group.name);

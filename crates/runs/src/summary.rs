@@ -57,6 +57,9 @@ pub struct Summary {
     /// Candidates of a search that failed and ranked last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_candidates: Option<u64>,
+    /// How the first of them failed: episode, step and cause.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_failure: Option<String>,
     /// Episodes whose physics failed.
     #[serde(default)]
     pub discarded_episodes: u64,
@@ -83,6 +86,7 @@ impl Summary {
             training_discounted_return: trained.training_discounted_return,
             training_return: trained.training_return,
             failed_candidates: trained.failed_candidates,
+            first_failure: trained.first_failure.clone(),
             discarded_episodes: trained.discarded_episodes,
             evaluation: trained.evaluation.clone(),
             design: design_summary(assembly, &trained.params),

@@ -235,9 +235,7 @@ mod tests {
             wall_s: 0.0,
             discounted_return,
             undiscounted_return: 0.0,
-            kl: 0.0,
-            entropy: 0.0,
-            step_fraction: 0.0,
+            learner: vec![],
             design_totals: vec![],
         };
         MetricsTable { rows: rows.iter().enumerate().map(row).collect(), ..MetricsTable::default() }

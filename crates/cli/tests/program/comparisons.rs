@@ -59,7 +59,7 @@ fn nothing_is_certain_from_one_seed_or_episode() {
 fn a_second_comparison_joins_the_first() {
     let sandbox = Sandbox::new("compare-twice");
     let line = "compare reach --methods hwasp --seeds 4 --env-steps 60000 --threads 1 --out both";
-    let mut begin = || sandbox.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begin = || sandbox.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let both = [begin(), begin()].map(|child| child.wait_with_output().unwrap());
     for output in &both {
         assert!(output.status.success() && text(&output.stdout).contains("| hwasp | 4 of 4 |"), "{output:?}");

@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod cell;
+mod comparison;
 mod contender;
 mod error;
 mod failure;
@@ -19,12 +20,13 @@ mod saved;
 mod table;
 
 pub use cell::{Cell, CellResult, Watch};
+pub use comparison::Comparison;
 pub use contender::Contender;
 pub use error::CompareError;
-pub use failure::{FAILURE, Failure};
+pub use failure::{FAILURE, Failure, MissingSeed};
 pub use figures::{Figure, MethodFigures, Pair, Reached};
 pub use grid::{Grid, run};
-pub use outcome::{Contest, MissingCell, MissingSeed, Outcome};
-pub use report::{COMPARISON, Comparison};
+pub use outcome::{Contest, MissingCell, Outcome};
+pub use report::COMPARISON;
 pub use reproduce::{FIGURES, PaperFigure};
 pub use saved::SavedComparison;

@@ -7,9 +7,10 @@ use hwasp_plot::MOST_RUNS;
 use hwasp_runs::{RunError, SUMMARY, io_error, saved_json, saved_metrics, saved_summary};
 
 use crate::cell::{CELLS, CellResult};
+use crate::comparison::Comparison;
 use crate::contender::folder_name;
 use crate::figures::MethodFigures;
-use crate::report::{COMPARISON, Comparison};
+use crate::report::COMPARISON;
 
 /// A comparison that was written before. Its cells are read without being put together: it needs no engine.
 #[derive(Clone, Debug)]

@@ -2,18 +2,18 @@
 
 use std::fmt::Write as _;
 
-use hwasp_runs::text::grouped;
+use hwasp_runs::text::{self, grouped};
 use hwasp_training::stats::{Interval, LEAST_VALUES};
 
+use crate::comparison::Comparison;
 use crate::figures::{Figure, MethodFigures};
-use crate::report::Comparison;
 
 /// What there is not.
 const NONE: &str = "–";
 
 pub(crate) fn markdown(comparison: &Comparison) -> String {
     let Comparison { experiment, methods, improvement, .. } = comparison;
-    let mut text = format!("# {}\n\n", hwasp_runs::text::markdown(experiment));
+    let mut text = format!("# {}\n\n", text::markdown(experiment));
     let groups: Vec<&str> =
         methods.first().map_or(vec![], |m| m.design_totals.iter().map(|(g, _)| g.as_str()).collect());
     let threshold = comparison.threshold.map_or(NONE.to_owned(), |threshold| format!("{threshold:.1}"));

@@ -44,7 +44,12 @@ writer.write(Event(wall_time=2.5, step=100000, summary=Summary(value=values)).Se
 print(kept.getvalue().hex())
 """
 
-COLUMNS = {name: f"train/{name}" for name in ("return", "discounted_return", "kl", "entropy", "step_fraction")} | {"gear": "design/gear"}
+COLUMNS = {name: f"train/{name}" for name in ("return", "discounted_return")} | {"gear": "design/gear"}
+
+
+def columns(header):
+    """The tag of each column that TensorBoard has: the learner's metrics too, by their own names."""
+    return COLUMNS | {name: "train/" + name.removeprefix("learner.") for name in header if name.startswith("learner.")}
 
 
 def inside(python, program, *arguments):
@@ -72,7 +77,7 @@ def main():
             rows = list(csv.DictReader(file))
         evaluation = json.loads((run / "summary.json").read_text())["evaluation"]
 
-    wanted = {tag: [[int(r["env_steps"]), single(r[name])] for r in rows] for name, tag in COLUMNS.items()}
+    wanted = {tag: [[int(r["env_steps"]), single(r[name])] for r in rows] for name, tag in columns(rows[0]).items()}
     last = int(rows[-1]["env_steps"])
     for name in ("return", "discounted_return"):
         wanted[f"evaluation/{name}"] = [[last, single(evaluation[name]["mean"])]]

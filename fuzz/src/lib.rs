@@ -208,7 +208,8 @@ pub fn metrics(bytes: &[u8]) {
             return;
         }
     };
-    let mut writer = MetricsWriter::new(Vec::new(), &table.design_totals).expect("names that were read");
+    let mut writer =
+        MetricsWriter::new(Vec::new(), &table.learner, &table.design_totals).expect("names that were read");
     table.rows.iter().for_each(|row| writer.append(row).expect("a row that was read"));
     let again = MetricsTable::read(&writer.into_inner()[..]).expect("what was written can be read");
     assert_eq!((again.design_totals, again.unfinished_line), (table.design_totals, None));
@@ -222,7 +223,7 @@ pub fn metrics(bytes: &[u8]) {
 }
 
 fn bits_of_row(row: &MetricsRow) -> Vec<u64> {
-    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
+    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
     let counts = [row.iteration, row.env_steps].into_iter();
-    counts.chain(fixed.iter().chain(&row.design_totals).map(|v| v.to_bits())).collect()
+    counts.chain(fixed.iter().chain(&row.learner).chain(&row.design_totals).map(|v| v.to_bits())).collect()
 }

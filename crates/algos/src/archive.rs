@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The most that a state may have counted: ten times the steps of the longest training, and so little that sums of counters
@@ -9,12 +10,12 @@ use thiserror::Error;
 const MOST_COUNTED: u64 = 1 << 44;
 
 /// An array of one kind of number.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Array {
     /// Parameters and what belongs to them.
-    F32(Vec<f32>),
+    F32(#[serde(with = "hwasp_core::bits")] Vec<f32>),
     /// Real numbers.
-    F64(Vec<f64>),
+    F64(#[serde(with = "hwasp_core::bits")] Vec<f64>),
     /// Counters.
     U64(Vec<u64>),
 }
@@ -193,6 +194,38 @@ impl<'a> Exchange<'a> {
         Ok(())
     }
 
+    /// A text, as the numbers of its characters; none where there is no array of this name.
+    pub fn text(&mut self, name: &str, text: &mut Option<String>) -> Result<(), StateError> {
+        let name = self.full(name);
+        match &mut self.side {
+            Side::Save(archive) => {
+                if let Some(text) = text {
+                    archive.insert(name, Array::U64(text.chars().map(u64::from).collect()));
+                }
+            }
+            Side::Load(archive) => {
+                let Some(array) = archive.get(&name) else {
+                    *text = None;
+                    return Ok(());
+                };
+                let Some(codes) = u64::unwrap(array) else { return Err(StateError::Missing { name, kind: u64::KIND }) };
+                let mut read = String::with_capacity(codes.len());
+                for &code in codes {
+                    let Some(character) = u32::try_from(code).ok().and_then(char::from_u32) else {
+                        return Err(StateError::Value {
+                            name,
+                            value: code as f64,
+                            limits: "the number of a character",
+                        });
+                    };
+                    read.push(character);
+                }
+                *text = Some(read);
+            }
+        }
+        Ok(())
+    }
+
     /// The archive of something else, as it is.
     ///
     /// # Errors
@@ -310,5 +343,28 @@ mod tests {
         );
         let broken = Outer { scores: vec![f64::INFINITY], ..outer() }.save();
         assert_eq!(broken.unwrap_err().to_string(), "`scores` of the saved state is inf, which is not finite");
+    }
+
+    /// A text and the lack of one, both ways.
+    struct Said(Option<String>);
+
+    impl Persist for Said {
+        fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+            with.text("said", &mut self.0)
+        }
+    }
+
+    #[test]
+    fn texts_come_back_and_may_be_missing() {
+        for said in [None, Some(String::new()), Some("5 µm, \"…\"".to_owned())] {
+            let archive = Said(said.clone()).save().unwrap();
+            assert_eq!(archive.contains_key("said"), said.is_some());
+            let mut back = Said(Some("before".into()));
+            back.load(&archive).unwrap();
+            assert_eq!(back.0, said);
+        }
+        let surrogate: Archive = [("said".to_owned(), Array::U64(vec![0xD800]))].into();
+        let error = Said(None).load(&surrogate).unwrap_err();
+        assert_eq!(error.to_string(), "`said` of the saved state is 55296, which is not the number of a character");
     }
 }

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::streams::Stream;
 use crate::units::Dimension;
 
 /// How an episode ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum End {
     /// In a state of no future: its value is zero.
     Terminated,
@@ -17,13 +19,29 @@ pub enum End {
 }
 
 /// Whether an episode did what the task is about, for tasks that can be failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcome {
     /// What kind of episode it was, the object's shape for one: success is told for each kind. A task keeps the names that
     /// it gives, so that telling one copies no text.
+    #[serde(with = "shared_text")]
     pub kind: Arc<str>,
     /// Whether it succeeded.
     pub success: bool,
+}
+
+/// A shared text, for serde: whoever reads it has one of its own.
+mod shared_text {
+    use std::sync::Arc;
+
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(text)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<str>, D::Error> {
+        String::deserialize(deserializer).map(Arc::from)
+    }
 }
 
 /// What one step gave.

@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bits;
 mod check_env;
 mod design;
 mod environment;
@@ -31,7 +32,7 @@ pub use placement::{Placement, PlacementError};
 pub use policy::{
     Actor, Anneal, HardwarePolicy, Noise, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows, Spread,
 };
-pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, RolloutError, Sampler};
+pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, RolloutError, Sampler, all_failed};
 pub use schedule::share_done;
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

@@ -6,15 +6,16 @@ mod sampler;
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::environment::{End, Outcome};
 
 pub use batch::{Batch, Episode};
-pub use sampler::Sampler;
+pub use sampler::{Sampler, all_failed};
 
 /// Why an episode is worth nothing.
-#[derive(Clone, Debug, Error, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq, Serialize, Deserialize)]
 #[error("episode {episode} of iteration {iteration} (seed {seed}) failed at step {step}: {what}")]
 pub struct RolloutError {
     /// The run's root seed.
@@ -37,11 +38,13 @@ impl RolloutError {
 }
 
 /// What is left of an episode whose rows nobody needs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeResult {
     /// Σ discount^t·reward.
+    #[serde(with = "crate::bits")]
     pub discounted_return: f64,
     /// Σ reward.
+    #[serde(with = "crate::bits")]
     pub undiscounted_return: f64,
     /// Its steps.
     pub steps: usize,
@@ -52,7 +55,7 @@ pub struct EpisodeResult {
 }
 
 /// Which episodes to run, and how.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Episodes {
     /// The root seed.
     pub seed: u64,
@@ -61,13 +64,14 @@ pub struct Episodes {
     /// Indices of the episodes.
     pub indices: Range<u64>,
     /// Fraction of training done, for schedules of noise and task.
+    #[serde(with = "crate::bits")]
     pub progress: f64,
     /// Training episodes explore; evaluation episodes start from held-out seeds.
     pub kind: EpisodeKind,
 }
 
 /// What episodes are for: chooses the streams, and whether there is noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EpisodeKind {
     /// With action noise.
     Training,

@@ -7,8 +7,9 @@ use hwasp_settings::{AnySettings, listed};
 pub const MOST_STEPS: usize = 100_000;
 /// Keys of `[task]` that every problem has.
 pub(crate) const COMMON_KEYS: [&str; 2] = ["problem", "horizon"];
-/// Columns of a learning curve that are not a design group's.
-const COLUMNS: [&str; 5] = ["iteration", "env_steps", "wall_s", "discounted_return", "return"];
+/// Columns of a learning curve that are not a design group's, the last three in those of earlier versions.
+const COLUMNS: [&str; 8] =
+    ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
 /// The longest name of a design group, bytes.
 const LONGEST_NAME: usize = 58;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use hwasp_experiment::Experiment;
-use hwasp_runs::files::{Disk, Files, json, read_limited, replace, told};
+use hwasp_runs::files::{Disk, Files, json, read_limited, replace, with_file_above};
 use hwasp_runs::io_error;
 use serde::{Deserialize, Serialize};
 
@@ -77,7 +77,7 @@ fn put(folder: &Path, name: &str, contents: &[u8]) -> Result<(), ExportError> {
     let path = folder.join(name);
     let around = path.parent().unwrap_or(folder);
     let error = |action, path, source| ExportError::Write(io_error(action, path, source));
-    Disk.create_folder(around).map_err(|source| error("create", around, told(around, source)))?;
+    Disk.create_folder(around).map_err(|source| error("create", around, with_file_above(around, source)))?;
     replace(&Disk, &path, contents).map_err(|source| error("write", &path, source))
 }
 

@@ -258,13 +258,11 @@ fn a_table_becomes_a_curve() {
         wall_s: 0.5 * i as f64,
         discounted_return: -(i as f64),
         undiscounted_return: 0.0,
-        kl: 0.0,
-        entropy: 0.0,
-        step_fraction: 0.0,
+        learner: vec![],
         design_totals: vec![5.0, i as f64],
     };
     let design_totals = vec!["a_total".to_owned(), "b_total".to_owned()];
-    let table = MetricsTable { design_totals, rows: (0..3).map(row).collect(), unfinished_line: None };
+    let table = MetricsTable { design_totals, rows: (0..3).map(row).collect(), ..MetricsTable::default() };
     let x = |axis| Curve::from_table("HWasP", &table, axis, 50).x;
     assert_eq!(x(XAxis::WallClock), [0.0, 0.5, 1.0]);
     assert_eq!(x(XAxis::Nominal), [50.0, 100.0, 150.0]);

@@ -1,6 +1,6 @@
 //! The report of one run, section by section.
 
-use hwasp_runs::text::{Shown, grouped};
+use hwasp_runs::text::{ReadableUnit, grouped};
 use hwasp_runs::{RunError, Summary};
 
 use crate::page::{KeyFigure, Page};
@@ -30,14 +30,16 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
         figures.push(figure("Success", percent(all.rate()), of));
     }
     for group in run.design.groups.iter().filter(|group| group.group.optimum.is_some()) {
-        let shown = Shown::of(&group.group);
+        let shown = ReadableUnit::of(&group.group);
         let best = group.group.optimum.map_or(String::new(), |best| format!("best known {}", shown.with_unit(best)));
         let label = if group.position.len() == 1 { String::new() } else { "Total ".to_owned() };
         let label = label + &words::spaced(&group.name);
         figures.push(figure(&label, shown.with_unit(group.group.total_as_built), best));
     }
-    let interval = format!("95 % interval {}", mean_interval(&evaluation.discounted_return, 1));
-    figures.push(figure("Discounted return", decimal(evaluation.discounted_return.mean, 1), interval));
+    let discounted = &evaluation.discounted_return;
+    let of = if discounted.interval.is_some() { "95 % interval " } else { "" };
+    let interval = format!("{of}{}", mean_interval(discounted, 1));
+    figures.push(figure("Discounted return", decimal(discounted.mean, 1), interval));
     let parameters: usize = run.design.groups.iter().map(|group| group.position.len()).sum();
     let of = if parameters == 1 { "number of the body" } else { "numbers of the body" };
     figures.push(figure("Designed", parameters.to_string(), of.into()));

@@ -42,6 +42,15 @@ pub enum RunError {
         /// What it lacks.
         file: &'static str,
     },
+    /// An experiment that was changed after the training.
+    #[error(
+        "{path} was changed after the training: policy and figures beside it belong to another experiment; put back what it \
+         said, or train the changed one into a folder of its own"
+    )]
+    Edited {
+        /// The file.
+        path: PathBuf,
+    },
     /// Another program writes to it.
     #[error(
         "{path} is in use by process {owner}, which trains into it; wait for it or stop it, or train into another folder"

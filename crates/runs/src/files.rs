@@ -105,8 +105,8 @@ pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, RunError> {
     Ok(bytes)
 }
 
-/// Why a folder cannot be created, in words where it is to lie in a file.
-pub fn told(folder: &Path, error: io::Error) -> io::Error {
+/// Why a folder cannot be created; where a file stands in the place of a folder above it, that file.
+pub fn with_file_above(folder: &Path, error: io::Error) -> io::Error {
     let file = folder.ancestors().find(|above| above.is_file());
     file.map_or(error, |file| io::Error::new(io::ErrorKind::NotADirectory, format!("{} is a file", file.display())))
 }

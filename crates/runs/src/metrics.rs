@@ -7,10 +7,11 @@
 //! | `wall_s` | time since training began | s |
 //! | `discounted_return` | mean over this iteration's training episodes | reward |
 //! | `return` | the same, undiscounted | reward |
-//! | `kl` | mean KL divergence of the policy before and after the update | nat |
-//! | `entropy` | entropy of the policy | nat |
-//! | `step_fraction` | share of TRPO's full step that was taken, 0 for none; 1 for PPO | - |
+//! | one per metric of the learner, such as `learner.kl`; none in a search | what an update did, by the learner's own names | the learner's |
 //! | one per design total, such as `stiffness_total` | the sum of a design group | SI |
+//!
+//! Tables that were written before learners had names of their own have `kl`, `entropy` and `step_fraction` behind `return`;
+//! they are read as metrics of these names.
 //!
 //! No field is ever quoted. Numbers are written in the shortest form that reads back to the same bits; what is not
 //! known is `NaN`.
@@ -20,57 +21,65 @@ mod error;
 use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
-use error::shown;
+use error::shorten;
 use hwasp_training::MetricsRow;
 
 pub use error::MetricsError;
 
-/// The columns that every table has, in order; the design totals follow.
-pub const FIXED_COLUMNS: [&str; 8] =
-    ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
+/// The columns that every table has, in order; the learner's metrics and the design totals follow.
+pub const FIXED_COLUMNS: [&str; 5] = ["iteration", "env_steps", "wall_s", "discounted_return", "return"];
+/// What the column of a learner's metric begins with.
+pub const LEARNER: &str = "learner.";
+/// The metrics behind the fixed columns of a table that has no column of a learner's own.
+const EARLIER: [&str; 3] = ["kl", "entropy", "step_fraction"];
+/// The most metrics of a learner in a table.
+pub const MOST_METRICS: usize = 32;
 /// The most design totals in a table.
 pub const MOST_TOTALS: usize = 64;
 /// The most rows that are read.
 pub const MOST_ROWS: usize = 2_000_000;
 /// The longest line that is read, in bytes.
 pub const LONGEST_LINE: usize = 8192;
-/// The longest name of a design total, in bytes.
+/// The longest name of a metric or a design total, in bytes.
 pub const LONGEST_NAME: usize = 64;
 
 /// Appends rows to a table; each row is flushed as one piece, so that a killed run leaves whole rows behind.
 #[derive(Debug)]
 pub struct MetricsWriter<W: Write> {
     out: W,
+    learner: usize,
     totals: usize,
 }
 
 impl<W: Write> MetricsWriter<W> {
-    /// Starts a table with one column for each design total, in this order.
-    pub fn new<S: AsRef<str>>(out: W, design_totals: &[S]) -> Result<Self, MetricsError> {
-        let mut writer = Self::resume(out, design_totals)?;
-        let names = FIXED_COLUMNS.into_iter().chain(design_totals.iter().map(AsRef::as_ref));
+    /// Starts a table with one column for each metric of the learner and each design total, in these orders.
+    pub fn new<L: AsRef<str>, T: AsRef<str>>(out: W, learner: &[L], totals: &[T]) -> Result<Self, MetricsError> {
+        let mut writer = Self::resume(out, learner, totals)?;
+        let learner = learner.iter().map(|name| format!("{LEARNER}{}", name.as_ref()));
+        let names = FIXED_COLUMNS.iter().map(ToString::to_string).chain(learner);
+        let names = names.chain(totals.iter().map(|name| name.as_ref().to_owned()));
         writer.line(&names.collect::<Vec<_>>().join(","))?;
         Ok(writer)
     }
 
     /// Continues a table that has its header already; `out` stands at its end.
-    pub fn resume<S: AsRef<str>>(out: W, design_totals: &[S]) -> Result<Self, MetricsError> {
-        check_names(design_totals)?;
-        Ok(Self { out, totals: design_totals.len() })
+    pub fn resume<L: AsRef<str>, T: AsRef<str>>(out: W, learner: &[L], totals: &[T]) -> Result<Self, MetricsError> {
+        check_columns(learner, totals)?;
+        Ok(Self { out, learner: learner.len(), totals: totals.len() })
     }
 
-    /// Appends one row. Its design totals must be as many as the table has; the error names line 0, where nothing has
-    /// been written.
+    /// Appends one row. Its metrics and design totals must be as many as the table has; the error names line 0, where nothing
+    /// has been written.
     pub fn append(&mut self, row: &MetricsRow) -> Result<(), MetricsError> {
-        if row.design_totals.len() != self.totals {
+        if (row.learner.len(), row.design_totals.len()) != (self.learner, self.totals) {
             let fixed = FIXED_COLUMNS.len();
-            let (found, expected) = (fixed + row.design_totals.len(), fixed + self.totals);
+            let (found, expected) =
+                (fixed + row.learner.len() + row.design_totals.len(), fixed + self.learner + self.totals);
             return Err(MetricsError::Fields { line: 0, found, expected });
         }
         let mut text = format!("{},{}", row.iteration, row.env_steps);
-        let fixed =
-            [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
-        for value in fixed.iter().chain(&row.design_totals) {
+        let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
+        for value in fixed.iter().chain(&row.learner).chain(&row.design_totals) {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let _ = write!(text, ",{value:?}");
         }
@@ -101,6 +110,8 @@ impl<W: Write> MetricsWriter<W> {
 /// A table read back.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MetricsTable {
+    /// The names of the learner's metrics, in the order of the rows' `learner`.
+    pub learner: Vec<String>,
     /// The names of the design totals, in the order of the rows' `design_totals`.
     pub design_totals: Vec<String>,
     /// The rows in order; `env_steps` never falls.
@@ -120,11 +131,12 @@ impl MetricsTable {
     /// Reads the rows before an iteration, and nothing of what comes behind the last of them.
     pub fn read_before(input: impl io::Read, iteration: u64) -> Result<Self, MetricsError> {
         let mut lines = Lines { input: io::BufReader::new(input), number: 0, unfinished: None, buffer: Vec::new() };
-        let mut table = Self { design_totals: read_header(lines.next()?.unwrap_or(""))?, ..Self::default() };
+        let (learner, design_totals) = read_header(lines.next()?.unwrap_or(""))?;
+        let mut table = Self { learner, design_totals, ..Self::default() };
         let mut before = 0;
         while table.rows.last().map_or(0, |row| row.iteration.saturating_add(1)) < iteration {
             let Some(text) = lines.next()? else { break };
-            let row = read_row(text, &table.design_totals).map_err(|e| e.at(lines.number))?;
+            let row = read_row(text, &table).map_err(|e| e.at(lines.number))?;
             if row.env_steps < before {
                 return Err(MetricsError::Backwards { line: lines.number, before, after: row.env_steps });
             }
@@ -140,57 +152,96 @@ impl MetricsTable {
         table.unfinished_line = lines.unfinished;
         Ok(table)
     }
+
+    /// The values of a learner's metric, one per row; none where the table does not have it.
+    pub fn metric(&self, name: &str) -> Option<impl Iterator<Item = f64>> {
+        let place = self.learner.iter().position(|known| known == name)?;
+        Some(self.rows.iter().map(move |row| row.learner[place]))
+    }
+
+    /// The rows with the metrics of these names, in their order, NaN where the table does not have one: those of a table that
+    /// another version of a learner wrote.
+    pub(crate) fn rows_with<L: AsRef<str>>(self, learner: &[L]) -> Vec<MetricsRow> {
+        let place = |name: &L| self.learner.iter().position(|known| known == name.as_ref());
+        let places: Vec<Option<usize>> = learner.iter().map(place).collect();
+        let mut rows = self.rows;
+        for row in &mut rows {
+            row.learner = places.iter().map(|place| place.map_or(f64::NAN, |place| row.learner[place])).collect();
+        }
+        rows
+    }
 }
 
-fn check_names<S: AsRef<str>>(names: &[S]) -> Result<(), MetricsError> {
-    if names.len() > MOST_TOTALS {
-        return Err(MetricsError::Totals { found: names.len() });
+/// Whether there are not too many columns, and each has a name that comes back.
+fn check_columns<L: AsRef<str>, T: AsRef<str>>(learner: &[L], totals: &[T]) -> Result<(), MetricsError> {
+    for (what, found, most) in
+        [("metrics of a learner", learner.len(), MOST_METRICS), ("design totals", totals.len(), MOST_TOTALS)]
+    {
+        if found > most {
+            return Err(MetricsError::Columns { what, found, most });
+        }
     }
+    check_names(learner, |name| FIXED_COLUMNS.contains(&name))?;
+    // Those of earlier tables are not free either: a damaged header would be read as one of other columns.
+    let taken = |name: &str| FIXED_COLUMNS.contains(&name) || EARLIER.contains(&name) || name.starts_with(LEARNER);
+    check_names(totals, taken)
+}
+
+fn check_names<S: AsRef<str>>(names: &[S], taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
     for (place, name) in names.iter().map(AsRef::as_ref).enumerate() {
         let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
-        let twice = FIXED_COLUMNS.contains(&name) || names[..place].iter().any(|n| n.as_ref() == name);
+        let twice = taken(name) || names[..place].iter().any(|n| n.as_ref() == name);
         if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) || twice {
-            return Err(MetricsError::Name { name: shown(name) });
+            return Err(MetricsError::Name { name: shorten(name) });
         }
     }
     Ok(())
 }
 
-fn read_header(text: &str) -> Result<Vec<String>, MetricsError> {
+/// The names of the learner's metrics and of the design totals.
+fn read_header(text: &str) -> Result<(Vec<String>, Vec<String>), MetricsError> {
     // A table saved by a spreadsheet may begin with a byte-order mark.
-    let mut names = text.trim_start_matches('\u{feff}').split(',');
+    let names: Vec<&str> = text.trim_start_matches('\u{feff}').split(',').collect();
     for (place, expected) in FIXED_COLUMNS.into_iter().enumerate() {
-        let found = names.next().unwrap_or("");
+        let found = names.get(place).copied().unwrap_or("");
         if found != expected {
-            return Err(MetricsError::Header { column: place + 1, found: shown(found), expected });
+            return Err(MetricsError::Header { column: place + 1, found: shorten(found), expected });
         }
     }
-    let totals: Vec<String> = names.map(str::to_owned).collect();
-    check_names(&totals)?;
-    Ok(totals)
+    let rest = &names[FIXED_COLUMNS.len()..];
+    let (learner, totals) = if rest.starts_with(&EARLIER) {
+        (EARLIER.map(str::to_owned).to_vec(), &rest[EARLIER.len()..])
+    } else {
+        let own: Vec<String> = rest.iter().map_while(|name| name.strip_prefix(LEARNER)).map(str::to_owned).collect();
+        let totals = &rest[own.len()..];
+        (own, totals)
+    };
+    check_columns(&learner, totals)?;
+    Ok((learner, totals.iter().map(|&name| name.to_owned()).collect()))
 }
 
 /// Reads one row; the errors name line 0 until [`MetricsError::at`] says which it was.
-fn read_row(text: &str, totals: &[String]) -> Result<MetricsRow, MetricsError> {
-    let (found, expected) = (text.split(',').count(), FIXED_COLUMNS.len() + totals.len());
+fn read_row(text: &str, table: &MetricsTable) -> Result<MetricsRow, MetricsError> {
+    let names = FIXED_COLUMNS.into_iter().chain(table.learner.iter().chain(&table.design_totals).map(String::as_str));
+    let (found, expected) = (text.split(',').count(), names.clone().count());
     if found != expected {
         return Err(MetricsError::Fields { line: 0, found, expected });
     }
-    let mut fields = FIXED_COLUMNS.into_iter().chain(totals.iter().map(String::as_str)).zip(text.split(','));
+    let mut fields = names.zip(text.split(','));
+    let mut field = || fields.next().expect("there are as many fields as names");
     let wrong = |(column, found): (&str, &str), expected| MetricsError::Number {
         line: 0,
         column: column.to_owned(),
-        found: shown(found),
+        found: shorten(found),
         expected,
     };
-    // The count of fields is checked above, so the default is never taken.
     let mut count = || {
-        let field = fields.next().unwrap_or_default();
+        let field = field();
         field.1.trim().parse::<u64>().map_err(|_| wrong(field, "a whole number from 0"))
     };
     let (iteration, env_steps) = (count()?, count()?);
     let mut real = || {
-        let field = fields.next().unwrap_or_default();
+        let field = field();
         let value = field.1.trim().parse::<f64>().map_err(|_| wrong(field, "a number"));
         // `-NaN` can be read, but is never written: of what is not known there is but one kind.
         value.map(|value| if value.is_nan() { f64::NAN } else { value })
@@ -201,10 +252,8 @@ fn read_row(text: &str, totals: &[String]) -> Result<MetricsRow, MetricsError> {
         wall_s: real()?,
         discounted_return: real()?,
         undiscounted_return: real()?,
-        kl: real()?,
-        entropy: real()?,
-        step_fraction: real()?,
-        design_totals: totals.iter().map(|_| real()).collect::<Result<_, _>>()?,
+        learner: table.learner.iter().map(|_| real()).collect::<Result<_, _>>()?,
+        design_totals: table.design_totals.iter().map(|_| real()).collect::<Result<_, _>>()?,
     })
 }
 

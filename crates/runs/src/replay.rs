@@ -71,7 +71,7 @@ pub fn replay(path: &Path, catalogue: &Catalogue, executor: &dyn Executor) -> Re
     }
     let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };
     let archive = &checkpoint.archive;
-    let (batch, outcome) = repeat(assembly, archive, executor).map_err(|e| state_error(e.into()))?;
+    let (batch, outcome) = repeat(assembly, archive, executor).map_err(state_error)?;
     let same_batch = batch.filter(|_| has_batch(archive)).map(|batch| has_this_batch(archive, &batch));
     let Checkpoint { iteration, env_steps, .. } = checkpoint;
     Ok(Replay { iteration, env_steps, fault, same_batch, outcome })

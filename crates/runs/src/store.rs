@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use hwasp_training::{Checkpoint, Fault};
+use hwasp_training::{Checkpoint, FailedIteration};
 
 use crate::checkpoint::{CheckpointError, LARGEST_CHECKPOINT, batch_arrays, decode, encode};
 use crate::error::{RunError, io_error};
@@ -76,13 +76,13 @@ impl CheckpointStore {
     }
 
     /// Writes the state before an iteration that failed, and what it learned from, into the folder `faults`; returns where.
-    pub fn write_fault(&self, fault: &Fault<'_>) -> Result<PathBuf, RunError> {
-        let path = self.run.join(FAULTS).join(name(fault.checkpoint));
-        let mut checkpoint = fault.checkpoint.clone();
-        if let Some(batch) = fault.batch {
+    pub fn write_failed(&self, failed: &FailedIteration<'_>) -> Result<PathBuf, RunError> {
+        let path = self.run.join(FAULTS).join(name(failed.checkpoint));
+        let mut checkpoint = failed.checkpoint.clone();
+        if let Some(batch) = failed.batch {
             checkpoint.archive.extend(batch_arrays(batch));
         }
-        self.put(&path, &checkpoint, Some(fault.what))?;
+        self.put(&path, &checkpoint, Some(failed.what))?;
         Ok(path)
     }
 

@@ -15,7 +15,8 @@
 //!
 //! | tag | meaning | steps |
 //! |---|---|---|
-//! | `train/return`, `train/discounted_return`, `train/kl`, `train/entropy`, `train/step_fraction` | as in [`metrics`](crate::metrics) | every iteration |
+//! | `train/return`, `train/discounted_return` | as in [`metrics`](crate::metrics) | every iteration |
+//! | `train/…`, such as `train/kl` | the learner's metrics, by its own names | every iteration |
 //! | `design/…`, such as `design/stiffness_total` | the design totals, SI | every iteration |
 //! | `evaluation/return`, `evaluation/discounted_return` | the means of the evaluation | the last |
 //! | `evaluation/median_discounted_return`, `evaluation/worst_discounted_return` | over its episodes | the last |
@@ -53,7 +54,8 @@ pub struct TensorBoard {
     file: File,
     /// Bytes of whole records.
     length: u64,
-    totals: Vec<String>,
+    /// Tags of the learner's metrics and of the design totals.
+    tags: Vec<String>,
     env_steps: u64,
     /// When the last record was written, s since 1970: never before the one before it, wherever the clock is set.
     wall_time: f64,
@@ -70,8 +72,7 @@ impl TensorBoard {
         let now = if latest < now() { now() } else { latest + 1.0 };
         let path = folder.join(format!("{PREFIX}{now:.6}.hwasp"));
         let file = File::create_new(&path).map_err(|source| TensorBoardError { path: path.clone(), source })?;
-        let mut board =
-            Self { path, file, length: 0, totals: Vec::new(), env_steps: 0, wall_time: now, failing: false };
+        let mut board = Self { path, file, length: 0, tags: Vec::new(), env_steps: 0, wall_time: now, failing: false };
         board.write(&version(now))?;
         Ok(board)
     }
@@ -112,23 +113,19 @@ impl TensorBoard {
 impl Observer for TensorBoard {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         let written = match event {
-            Event::Started { totals, resumed, .. } => {
-                self.totals = totals.iter().map(|name| format!("design/{name}")).collect();
+            Event::Started { learner, totals, resumed, .. } => {
+                let learner = learner.iter().map(|name| format!("train/{name}"));
+                self.tags = learner.chain(totals.iter().map(|name| format!("design/{name}"))).collect();
                 let now = self.tick();
                 resumed.map_or(Ok(()), |env_steps| self.write(&session(now, env_steps + 1)))
             }
             Event::Iteration(row) => {
                 self.env_steps = row.env_steps;
-                let train = [
-                    ("train/return", row.undiscounted_return),
-                    ("train/discounted_return", row.discounted_return),
-                    ("train/kl", row.kl),
-                    ("train/entropy", row.entropy),
-                    ("train/step_fraction", row.step_fraction),
-                ];
-                let totals = self.totals.clone();
-                let design = totals.iter().map(String::as_str).zip(row.design_totals.iter().copied());
-                self.scalars(train.into_iter().chain(design))
+                let train =
+                    [("train/return", row.undiscounted_return), ("train/discounted_return", row.discounted_return)];
+                let tags = self.tags.clone();
+                let values = row.learner.iter().chain(&row.design_totals).copied();
+                self.scalars(train.into_iter().chain(tags.iter().map(String::as_str).zip(values)))
             }
             Event::Evaluated(evaluation) => self.scalars(
                 [

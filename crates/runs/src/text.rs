@@ -31,14 +31,14 @@ pub fn quantity(value: f64, unit: &str) -> String {
 
 /// The unit in which a group of design parameters reads well: mm and N·mm/rad for what is inside a finger.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct ReadableUnit {
     /// Its symbol, empty for pure numbers.
     pub unit: String,
     /// How many SI units it is.
     pub to_si: f64,
 }
 
-impl Shown {
+impl ReadableUnit {
     /// The unit of a group, by the most that it can come to in total.
     pub fn of(group: &DesignGroupSummary) -> Self {
         let most = group.limits[1] * group.values.len() as f64;

@@ -12,15 +12,18 @@ fn row(iteration: u64, values: [f64; 8]) -> MetricsRow {
         wall_s: values[0],
         discounted_return: values[1],
         undiscounted_return: values[2],
-        kl: values[3],
-        entropy: values[4],
-        step_fraction: values[5],
+        learner: values[3..6].to_vec(),
         design_totals: values[6..].to_vec(),
     }
 }
 
+/// Of a search.
+const NONE: [&str; 0] = [];
+/// Of a learner.
+const LEARNER: [&str; 3] = ["kl", "entropy", "grad.norm"];
+
 fn written(rows: &[MetricsRow]) -> Vec<u8> {
-    let mut writer = MetricsWriter::new(Vec::new(), &["stiffness_total", "length_total"]).unwrap();
+    let mut writer = MetricsWriter::new(Vec::new(), &LEARNER, &["stiffness_total", "length_total"]).unwrap();
     for row in rows {
         writer.append(row).unwrap();
     }
@@ -28,7 +31,7 @@ fn written(rows: &[MetricsRow]) -> Vec<u8> {
 }
 
 fn header() -> String {
-    format!("{},stiffness_total\n", FIXED_COLUMNS.join(","))
+    format!("{},learner.kl,learner.entropy,learner.grad.norm,stiffness_total\n", FIXED_COLUMNS.join(","))
 }
 
 fn read(text: impl AsRef<[u8]>) -> Result<MetricsTable, MetricsError> {
@@ -48,8 +51,8 @@ fn message(body: &str) -> String {
 }
 
 fn bits(row: &MetricsRow) -> Vec<u64> {
-    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.kl, row.entropy, row.step_fraction];
-    fixed.iter().chain(&row.design_totals).map(|v| v.to_bits()).collect()
+    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
+    fixed.iter().chain(&row.learner).chain(&row.design_totals).map(|v| v.to_bits()).collect()
 }
 
 #[test]
@@ -58,7 +61,9 @@ fn numbers_come_back_with_their_bits() {
     let odd = [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, f64::MIN, 0.0, 2f64.powi(60)];
     let rows = [row(0, hard), row(1, odd), row(u64::MAX / 4001 - 2, hard)];
     let table = read(written(&rows)).unwrap();
+    assert_eq!(table.learner, LEARNER);
     assert_eq!(table.design_totals, ["stiffness_total", "length_total"]);
+    assert_eq!(table.metric("entropy").unwrap().collect::<Vec<_>>(), [-0.0, 123_456_789.0, -0.0]);
     assert_eq!(table.unfinished_line, None);
     assert_eq!(table.rows.len(), 3);
     for (got, expected) in table.rows.iter().zip(&rows) {
@@ -73,16 +78,16 @@ fn the_text_is_plain_and_short() {
         String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 0.8, 65.5, 1e-9])])).unwrap();
     assert_eq!(
         text,
-        "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,stiffness_total,length_total\n\
+        "iteration,env_steps,wall_s,discounted_return,return,learner.kl,learner.entropy,learner.grad.norm,stiffness_total,length_total\n\
          0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,65.5,1e-9\n"
     );
-    assert!(read(text).unwrap().rows[0].kl.is_nan());
+    assert!(read(text).unwrap().rows[0].learner[0].is_nan());
 }
 
 #[test]
 fn a_table_can_be_continued() {
     let names = ["stiffness_total", "length_total"];
-    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 8])]), &names).unwrap();
+    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 8])]), &LEARNER, &names).unwrap();
     writer.append(&row(1, [1.0; 8])).unwrap();
     assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 8]), row(1, [1.0; 8])]));
 }
@@ -98,8 +103,8 @@ fn an_unfinished_line_is_left_out_and_reported() {
 
 #[test]
 fn line_ends_and_marks_of_other_programs_are_read() {
-    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3,4,5,6\r\n", FIXED_COLUMNS.join(","))).unwrap();
-    assert_eq!((table.rows.len(), table.rows[0].entropy), (1, 5.0));
+    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3\r\n", FIXED_COLUMNS.join(","))).unwrap();
+    assert_eq!((table.rows.len(), table.rows[0].undiscounted_return), (1, 3.0));
 }
 
 #[test]
@@ -141,7 +146,7 @@ fn rows_without_end_are_refused() {
     struct Rows(u64);
     impl std::io::Read for Rows {
         fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-            let row = b"0,0,0,0,0,0,0,0\n";
+            let row = b"0,0,0,0,0\n";
             let count = buffer.len().min(1 << 16) / row.len();
             assert!(count > 0 && self.0 < 10_000_000, "the reader does not stop");
             for place in buffer.chunks_exact_mut(row.len()).take(count) {
@@ -158,19 +163,55 @@ fn rows_without_end_are_refused() {
 #[test]
 fn names_that_break_a_header_are_refused() {
     let long = "x".repeat(65);
-    for name in ["", "a,b", "a\nb", "\"a\"", "return", " a", &long] {
-        assert!(matches!(MetricsWriter::new(Vec::new(), &[name]), Err(MetricsError::Name { .. })), "{name}");
+    for name in ["", "a,b", "a\nb", "\"a\"", "return", "entropy", "learner.kl", " a", &long] {
+        assert!(matches!(MetricsWriter::new(Vec::new(), &NONE, &[name]), Err(MetricsError::Name { .. })), "{name}");
         let text = format!("{},{name}\n", FIXED_COLUMNS.join(","));
-        assert!(name == "a,b" || read(text).is_err(), "{name}");
+        assert!(["a,b", "learner.kl"].contains(&name) || read(text).is_err(), "{name}");
     }
-    assert!(matches!(MetricsWriter::new(Vec::new(), &["a", "a"]), Err(MetricsError::Name { .. })));
+    for name in ["", "a,b", "a\nb", "return", " a", &long] {
+        assert!(matches!(MetricsWriter::new(Vec::new(), &[name], &NONE), Err(MetricsError::Name { .. })), "{name}");
+    }
+    assert!(matches!(MetricsWriter::new(Vec::new(), &NONE, &["a", "a"]), Err(MetricsError::Name { .. })));
     let many: Vec<String> = (0..65).map(|i| format!("total_{i}")).collect();
-    assert!(matches!(MetricsWriter::new(Vec::new(), &many), Err(MetricsError::Totals { found: 65 })));
+    let error = MetricsWriter::new(Vec::new(), &NONE, &many).unwrap_err().to_string();
+    assert_eq!(error, "65 design totals are more than 64");
+    let error = MetricsWriter::new(Vec::new(), &many[..33], &NONE).unwrap_err().to_string();
+    assert_eq!(error, "33 metrics of a learner are more than 32");
+    // The longest header that there can be is no longer than a line may be.
+    let long = |count: usize| (0..count).map(|i| format!("{i:0>64}")).collect::<Vec<_>>();
+    let widest = MetricsWriter::new(Vec::new(), &long(32), &long(64)).unwrap().into_inner();
+    assert_eq!(read(widest).unwrap().design_totals.len(), 64);
 }
 
 #[test]
 fn a_row_of_another_table_is_not_written() {
-    let mut writer = MetricsWriter::new(Vec::new(), &["stiffness_total"]).unwrap();
+    let mut writer = MetricsWriter::new(Vec::new(), &LEARNER, &["stiffness_total"]).unwrap();
     assert!(matches!(writer.append(&row(0, [0.0; 8])), Err(MetricsError::Fields { found: 10, expected: 9, .. })));
     assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), header());
+}
+
+/// Every table had `kl`, `entropy` and `step_fraction`, whatever had learned: PPO a share of a step that it does not know, and a
+/// search three columns of nothing.
+#[test]
+fn tables_of_earlier_versions_are_read() {
+    let text =
+        "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,gear\n0,1200,1,2,3,4,5,6,7\n";
+    let table = read(text).unwrap();
+    assert_eq!(
+        (&*table.learner, &*table.design_totals),
+        (&["kl", "entropy", "step_fraction"].map(String::from)[..], &["gear".to_owned()][..])
+    );
+    assert_eq!((&*table.rows[0].learner, &*table.rows[0].design_totals), (&[4.0, 5.0, 6.0][..], &[7.0][..]));
+    assert_eq!(table.metric("kl").unwrap().collect::<Vec<_>>(), [4.0]);
+    assert!(table.metric("grad_norm").is_none());
+}
+
+/// What a search writes has no column of a learner.
+#[test]
+fn a_search_has_no_metrics_of_a_learner() {
+    let writer = MetricsWriter::new(Vec::new(), &NONE, &["gear"]).unwrap();
+    assert_eq!(
+        String::from_utf8(writer.into_inner()).unwrap(),
+        "iteration,env_steps,wall_s,discounted_return,return,gear\n"
+    );
 }

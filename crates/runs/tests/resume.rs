@@ -13,7 +13,7 @@ use hwasp_experiment::Experiment;
 use hwasp_runs::checkpoint::{decode, encode};
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun, no_extras, replay};
 use hwasp_testing::{KINDS, Keeper, Stopper, catalogue, executor, run, small, spoil, told};
-use hwasp_training::{Assembly, Event, Fault, Observer, TrainError, params_at, train, train_from};
+use hwasp_training::{Assembly, Event, FailedIteration, Observer, TrainError, params_at, train, train_from};
 
 fn empty(name: &str) -> PathBuf {
     hwasp_testing::empty(env!("CARGO_TARGET_TMPDIR"), name)
@@ -239,8 +239,8 @@ fn an_iteration_that_failed_can_be_repeated_from_its_folder() {
     let batch = sampler.collect(&Serial, &params_at(&assembly, checkpoint).unwrap(), &episodes).unwrap();
 
     let mut folder = RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
-    let fault = Fault { checkpoint, batch: Some(&batch), what: "the policy gradient is not finite" };
-    folder.on(Event::Failed(&fault)).unwrap();
+    let failed = FailedIteration { checkpoint, batch: Some(&batch), what: "the policy gradient is not finite" };
+    folder.on(Event::Failed(&failed)).unwrap();
     let file = folder.fault().unwrap().to_owned();
     assert_eq!(file, path.join("faults/iteration-00000003.safetensors"));
     for threads in [1, 2] {
@@ -248,7 +248,7 @@ fn an_iteration_that_failed_can_be_repeated_from_its_folder() {
         assert_eq!((replayed.iteration, replayed.env_steps, replayed.same_batch), (3, 3600, Some(true)));
         assert_eq!(replayed.fault.as_deref(), Some("the policy gradient is not finite"));
         // What was told is not what happens: this iteration is sound, and gives the row of the whole training.
-        assert_eq!(replayed.outcome.unwrap().get("kl"), Some(kept.rows[3].kl));
+        assert_eq!(replayed.outcome.unwrap().values(), kept.rows[3].learner);
     }
     // The state before it is a checkpoint as well, without a batch.
     let replayed = replay(&path.join("checkpoints/iteration-00000003.safetensors"), catalogue(), &Serial).unwrap();
@@ -297,4 +297,38 @@ fn physics_that_fail_again_and_again_end_the_training_with_a_reason() {
     assert!((*iterations, *asked) == (3, 40) && *failed > 20, "{error}");
     assert_eq!(keeper.rows.len(), 2);
     assert!(error.to_string().contains("in 3 iterations in a row"), "{error}");
+}
+
+/// A run that an earlier version began has the columns `kl`, `entropy` and `step_fraction`, whatever learns. Its curve goes on
+/// with the learner's own names; what the learner has of the old columns is kept, what nobody wrote down is NaN.
+#[test]
+fn the_curve_of_an_earlier_version_goes_on() {
+    let spec = small("hwasp", &[]);
+    let (path, assembly) = (empty("earlier"), Assembly::new(&spec).unwrap());
+    let stop = AtomicBool::new(false);
+    let mut folder = RunFolder::create(&path, &spec, &provenance(&spec), always()).unwrap();
+    let mut stopper = Stopper { inner: &mut folder, stop: &stop, after: 3 };
+    train(&assembly, &Serial, &mut stopper, &stop).unwrap_err();
+    drop(folder);
+    let table = SavedRun::open(&path, catalogue()).unwrap().metrics().unwrap();
+    assert_eq!(table.learner, ["kl", "entropy", "clip_fraction", "grad_norm", "epochs"]);
+    let mut earlier = "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,gear\n".to_owned();
+    for row in &table.rows {
+        let values = [row.wall_s, row.discounted_return, row.undiscounted_return, row.learner[0], row.learner[1], 1.0];
+        let values = values.iter().chain(&row.design_totals).map(|value| format!(",{value:?}"));
+        earlier += &format!("{},{}{}\n", row.iteration, row.env_steps, values.collect::<String>());
+    }
+    fs::write(path.join("metrics.csv"), earlier).unwrap();
+
+    let Resumed { mut folder, found } = RunFolder::resume(&path, &spec, provenance(&spec), always()).unwrap();
+    train_from(found.checkpoint.as_ref(), &assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
+    drop(folder);
+    let whole = SavedRun::open(&path, catalogue()).unwrap().metrics().unwrap();
+    assert_eq!((whole.rows.len(), &whole.learner), (8, &table.learner));
+    let kept = found.checkpoint.unwrap().iteration as usize;
+    for (i, (row, before)) in whole.rows.iter().zip(&table.rows).take(kept).enumerate() {
+        assert_eq!((&row.learner[..2], row.env_steps), (&before.learner[..2], before.env_steps), "{i}");
+        assert!(row.learner[2..].iter().all(|value| value.is_nan()), "{i}");
+    }
+    assert!(whole.rows[kept..].iter().all(|row| row.learner.iter().all(|value| value.is_finite())));
 }

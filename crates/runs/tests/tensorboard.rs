@@ -121,9 +121,11 @@ fn a_training_can_be_read_back() {
         let train = [
             ("train/return", row.undiscounted_return),
             ("train/discounted_return", row.discounted_return),
-            ("train/kl", row.kl),
-            ("train/entropy", row.entropy),
-            ("train/step_fraction", row.step_fraction),
+            ("train/kl", row.learner[0]),
+            ("train/entropy", row.learner[1]),
+            ("train/clip_fraction", row.learner[2]),
+            ("train/grad_norm", row.learner[3]),
+            ("train/epochs", row.learner[4]),
             ("design/gear", row.design_totals[0]),
         ];
         expected.push((row.env_steps, train.to_vec()));
@@ -149,20 +151,18 @@ fn a_training_can_be_read_back() {
 fn what_is_not_finite_is_left_out() {
     let mut board = TensorBoard::create(&empty("unknown")).unwrap();
     let totals = ["gear".to_owned()];
-    board.on(Event::Started { env_steps: 10, resumed: None, totals: &totals }).unwrap();
+    board.on(Event::Started { env_steps: 10, resumed: None, learner: &["kl", "entropy"], totals: &totals }).unwrap();
     let mut row = MetricsRow {
         iteration: 0,
         env_steps: 5,
         wall_s: 1.0,
         discounted_return: f64::NAN,
         undiscounted_return: -1.5,
-        kl: f64::INFINITY,
-        entropy: 0.5,
-        step_fraction: f64::NAN,
+        learner: vec![f64::INFINITY, 0.5],
         design_totals: vec![f64::NEG_INFINITY],
     };
     board.on(Event::Iteration(&row)).unwrap();
-    (row.undiscounted_return, row.entropy) = (f64::NAN, 1e300);
+    (row.undiscounted_return, row.learner[1]) = (f64::NAN, 1e300);
     board.on(Event::Iteration(&row)).unwrap();
     let file = fs::read(board.path()).unwrap();
     let records = records(&file);
@@ -186,7 +186,7 @@ fn a_resumed_training_says_where_it_goes_on() {
     let first = TensorBoard::create(&folder).unwrap();
     let mut board = TensorBoard::create(&folder).unwrap();
     assert!(first.path() < board.path(), "files are read in the order of their names");
-    board.on(Event::Started { env_steps: 10, resumed: Some(5), totals: &[] }).unwrap();
+    board.on(Event::Started { env_steps: 10, resumed: Some(5), learner: &[], totals: &[] }).unwrap();
     let file = fs::read(board.path()).unwrap();
     let records = records(&file);
     assert_eq!(records.len(), 2);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use hwasp_core::{EnvSpec, Environment, Executor, Serial, Step, Stream, Threads};
+use hwasp_core::{EnvSpec, Environment, Executor, Outcome, Serial, Step, Stream, Threads};
 use hwasp_experiment::{Catalogue, Experiment, Faults, Layers, load};
 use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, Trained, train_from};
 
@@ -150,6 +150,10 @@ impl Environment for Spoiled {
         self.inner.spec()
     }
 
+    fn set_progress(&mut self, progress: f64) {
+        self.inner.set_progress(progress);
+    }
+
     fn reset(&mut self, rng: &mut Stream) {
         self.inner.reset(rng);
     }
@@ -168,5 +172,13 @@ impl Environment for Spoiled {
 
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         (self.how)(effort, self.inner.step(effort, command))
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        self.inner.outcome()
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.inner.fault()
     }
 }

@@ -14,6 +14,7 @@ use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
 pub(crate) use self::budget::FINAL_EPISODES;
+pub use self::budget::Piece;
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;
@@ -36,6 +37,9 @@ pub enum AssembleError {
         /// The problem.
         problem: String,
     },
+    /// The same elsewhere, in its own words.
+    #[error("{0}")]
+    Elsewhere(String),
     /// A search whose budget does not hold one generation.
     #[error(
         "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \
@@ -182,6 +186,10 @@ impl Assembly {
     /// The world that stands in for the robot built to this `design` (SI): the hand with the engine's own tendons and springs, at
     /// the rate of the simulation, in which the law has no say.
     pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
+        let (given, needed) = (design.len(), self.policy.space().len());
+        if given != needed {
+            return Err(PlacementError::Count { given, needed }.into());
+        }
         let task = &self.experiment.task;
         let none = || AssembleError::NoNative { problem: task.name().to_owned() };
         let stand_in = task.built().stand_in.as_ref().ok_or_else(none)?;

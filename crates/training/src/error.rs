@@ -5,7 +5,8 @@ use hwasp_core::RolloutError;
 use thiserror::Error;
 
 use crate::assemble::AssembleError;
-use crate::evaluate::EvaluateError;
+use crate::collect::CollectError;
+use crate::evaluation::EvaluateError;
 use crate::observer::ObserverError;
 
 /// Why a training ended early.
@@ -31,6 +32,21 @@ pub enum TrainError {
         /// The first of those that failed.
         first: RolloutError,
     },
+    /// Every candidate of a generation failed.
+    #[error("all {candidates} candidates of generation {generation} failed, {alike} of them as the first: {first}")]
+    AllFailed {
+        /// Candidates.
+        candidates: usize,
+        /// The generation.
+        generation: u64,
+        /// How many failed of the same cause as the first.
+        alike: usize,
+        /// How the first failed: episode, step and cause.
+        first: String,
+    },
+    /// Whoever was asked for episodes has not answered.
+    #[error(transparent)]
+    Collect(CollectError),
     /// Someone asked it to stop. Its observer has a checkpoint of all that was done.
     #[error("stopped after {env_steps} of {budget} steps")]
     Interrupted {
@@ -54,4 +70,14 @@ pub enum TrainError {
     /// Someone who watched could not go on, the run folder for one.
     #[error(transparent)]
     Observer(#[from] ObserverError),
+}
+
+impl From<CollectError> for TrainError {
+    fn from(error: CollectError) -> Self {
+        match error {
+            CollectError::Rollout(error) => Self::Rollout(error),
+            CollectError::Setup(text) => Self::Assemble(AssembleError::Elsewhere(text)),
+            CollectError::Unanswered(_) | CollectError::Interrupted => Self::Collect(error),
+        }
+    }
 }

@@ -1,123 +1,37 @@
 //! Evaluation: the deterministic policy on held-out starts, on the hardware as built.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use hwasp_core::{EpisodeKind, EpisodeResult, Episodes, Executor, RolloutError, Sampler, Stream};
-use rand::SeedableRng;
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
-use crate::assemble::{AssembleError, Assembly};
-use crate::stats::{Interval, Sample, StatsError, bootstrap_interval, wilson};
+use hwasp_core::{EpisodeKind, Episodes, Executor, Sampler, all_failed};
 use hwasp_problem::World;
 
-/// Why there is no evaluation.
-#[derive(Debug, Error)]
-pub enum EvaluateError {
-    /// The deployed policy cannot be put together.
-    #[error(transparent)]
-    Assemble(#[from] AssembleError),
-    /// An episode failed.
-    #[error(transparent)]
-    Rollout(#[from] RolloutError),
-    /// No figure can be computed from the returns.
-    #[error(transparent)]
-    Stats(#[from] StatsError),
-}
+use crate::assemble::{AssembleError, Assembly};
+use crate::collect::{Collector, EpisodeAnswer, EpisodesRequest, ExperimentText, Stage};
+use crate::evaluation::{EvaluateError, Evaluation};
+use crate::worker::LocalCollector;
 
-/// A mean over episodes with its 95 % bootstrap interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeanInterval {
-    /// The mean.
-    pub mean: f64,
-    /// The lower end of the interval.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
-}
-
-/// What a design and its controller are worth.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Evaluation {
-    /// Episodes run.
-    pub episodes: u64,
-    /// The root seed of their starts.
-    pub seed: u64,
-    /// Discounted return.
-    pub discounted_return: MeanInterval,
-    /// Undiscounted return.
-    #[serde(rename = "return")]
-    pub undiscounted_return: MeanInterval,
-    /// The median of the discounted returns.
-    pub median_discounted_return: f64,
-    /// The worst discounted return.
-    pub worst_discounted_return: f64,
-    /// Episodes whose physics failed; they are in none of the figures.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub discarded_episodes: u64,
-    /// The share of episodes that succeeded, over all and for each kind, for tasks that know success.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub success: Vec<SuccessRate>,
-}
-
-/// How many episodes of a kind succeeded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SuccessRate {
-    /// The kind, the object's shape for one; `all` for every episode.
-    pub kind: String,
-    /// Episodes that succeeded.
-    pub successes: u64,
-    /// Episodes run.
-    pub episodes: u64,
-    /// The lower end of Wilson's 95 % interval of the share.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
-}
-
-impl SuccessRate {
-    /// The share that succeeded.
-    pub fn rate(&self) -> f64 {
-        self.successes as f64 / self.episodes as f64
-    }
-}
-
-#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
-fn is_zero(count: &u64) -> bool {
-    *count == 0
-}
-
-/// Over all episodes, then kind by kind in the order of their names; empty where the task knows no success.
-fn success_rates(results: &[Result<EpisodeResult, RolloutError>]) -> Vec<SuccessRate> {
-    let mut kinds: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
-    for outcome in results.iter().flatten().filter_map(|e| e.outcome.as_ref()) {
-        let (successes, episodes) = kinds.entry(&*outcome.kind).or_default();
-        *successes += u64::from(outcome.success);
-        *episodes += 1;
-    }
-    if kinds.is_empty() {
-        return Vec::new();
-    }
-    let all = kinds.values().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
-    let rate = |kind: &str, (successes, episodes)| {
-        let Interval { low, high } = wilson(successes, episodes);
-        SuccessRate { kind: kind.to_owned(), successes, episodes, low, high }
-    };
-    std::iter::once(rate("all", all)).chain(kinds.iter().map(|(kind, &count)| rate(kind, count))).collect()
-}
-
-/// Evaluates the controller in `params` on the design in them, as built, where it has to work.
+/// Evaluates the controller in `params` on the design in them, as built, where it has to work: so many episodes from the
+/// starts of a root seed.
 pub fn evaluate(
     assembly: &Assembly,
     params: &[f32],
-    (episodes, seed): (u64, u64),
+    asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    let design = assembly.policy.design(params);
-    let built = assembly.worlds.training.law.as_built(&design);
-    evaluate_in(assembly, &assembly.worlds.deployment, &built, params, (episodes, seed), executor)
+    evaluate_by(&LocalCollector::new(assembly, executor)?, assembly, params, asked)
+}
+
+/// The same, of episodes that `collector` gives.
+pub fn evaluate_by(
+    collector: &dyn Collector,
+    assembly: &Assembly,
+    params: &[f32],
+    asked: (u64, u64),
+) -> Result<Evaluation, EvaluateError> {
+    let experiment = ExperimentText::of(assembly.experiment())?;
+    let stage = Stage::Deployment(assembly.built(params));
+    Ok(Evaluation::new(&rollouts(collector, assembly, experiment, stage, params, asked)?, asked)?)
 }
 
 /// Evaluates the controller in `params` on the design in them in the world that stands in for the built robot: the hand with
@@ -128,11 +42,22 @@ pub fn evaluate_native(
     asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    let design = assembly.policy.design(params);
-    evaluate_in(assembly, &assembly.native(&design)?, &design, params, asked, executor)
+    evaluate_native_by(&LocalCollector::new(assembly, executor)?, assembly, params, asked)
 }
 
-/// Evaluates the controller in `params` on a given design in a given world of the same problem.
+/// The same, of episodes that `collector` gives.
+pub fn evaluate_native_by(
+    collector: &dyn Collector,
+    assembly: &Assembly,
+    params: &[f32],
+    asked: (u64, u64),
+) -> Result<Evaluation, EvaluateError> {
+    let experiment = ExperimentText::of(assembly.experiment())?;
+    let stage = Stage::StandIn(assembly.policy.design(params));
+    Ok(Evaluation::new(&rollouts(collector, assembly, experiment, stage, params, asked)?, asked)?)
+}
+
+/// Evaluates the controller in `params` on a given design in a given world of the same problem, which only this process has.
 pub fn evaluate_in(
     assembly: &Assembly,
     world: &World,
@@ -141,45 +66,26 @@ pub fn evaluate_in(
     asked: (u64, u64),
     executor: &dyn Executor,
 ) -> Result<Evaluation, EvaluateError> {
-    Ok(Evaluation::new(&rollouts(assembly, world, design, params, asked, executor)?, asked)?)
+    let (episodes, seed) = asked;
+    let (sampler, controller) = (sampler(assembly, world, design)?, assembly.policy.controller_params(params));
+    let discount = assembly.experiment().discount();
+    Ok(Evaluation::new(&sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), discount)?, asked)?)
 }
 
 /// What the episodes of an evaluation come to, by index; the error where the physics failed. Their rows are not kept, so that
 /// there may be many.
 pub(crate) fn rollouts(
+    collector: &dyn Collector,
     assembly: &Assembly,
-    world: &World,
-    design: &[f64],
+    experiment: ExperimentText,
+    stage: Stage,
     params: &[f32],
     (episodes, seed): (u64, u64),
-    executor: &dyn Executor,
-) -> Result<Vec<Result<EpisodeResult, RolloutError>>, EvaluateError> {
-    let sampler = sampler(assembly, world, design)?;
-    let controller = assembly.policy.controller_params(params);
-    Ok(sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), assembly.experiment().discount())?)
-}
-
-impl Evaluation {
-    /// What the episodes come to.
-    pub(crate) fn new(
-        results: &[Result<EpisodeResult, RolloutError>],
-        (episodes, seed): (u64, u64),
-    ) -> Result<Self, StatsError> {
-        let returns = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).collect::<Vec<_>>();
-        let discounted = returns(|e| e.discounted_return);
-        let mut stream = Stream::seed_from_u64(seed);
-        let sample = Sample::new(&discounted)?;
-        Ok(Self {
-            episodes,
-            seed,
-            discounted_return: mean_interval(&discounted, &mut stream)?,
-            undiscounted_return: mean_interval(&returns(|e| e.undiscounted_return), &mut stream)?,
-            median_discounted_return: sample.quantile(0.5),
-            worst_discounted_return: sample.min(),
-            discarded_episodes: results.iter().filter(|result| result.is_err()).count() as u64,
-            success: success_rates(results),
-        })
-    }
+) -> Result<Vec<EpisodeAnswer>, EvaluateError> {
+    let params = assembly.policy.controller_params(params).to_vec();
+    let episodes = held_out(seed, 0..episodes);
+    let results = collector.results(&EpisodesRequest { experiment, stage, params, episodes, steps: None })?;
+    all_failed(&results).map_or(Ok(results), |first| Err(first.into()))
 }
 
 /// The deterministic controller on the hardware of `design` in a world; for [`HardwarePolicy::controller_params`].
@@ -193,9 +99,4 @@ pub fn sampler(assembly: &Assembly, world: &World, design: &[f64]) -> Result<Sam
 /// Episodes that training never sees.
 pub fn held_out(seed: u64, indices: Range<u64>) -> Episodes {
     Episodes { seed, iteration: 0, indices, progress: 1.0, kind: EpisodeKind::Evaluation }
-}
-
-pub(crate) fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {
-    let Interval { low, high, .. } = bootstrap_interval(values, Sample::mean, stream)?;
-    Ok(MeanInterval { mean: Sample::new(values)?.mean(), low, high })
 }

@@ -1,13 +1,14 @@
 //! The loop that follows the policy's gradient: jobs out, a batch in, an update, an event.
 
 use hwasp_algos::{Archive, Exchange, Learner, Metrics, Persist, StateError};
-use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, Sampler};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor};
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
+use crate::collect::{Collector, EpisodesRequest, ExperimentText, Stage};
 use crate::error::TrainError;
-use crate::learned::{Clock, Learned, Loop};
-use crate::observer::{Event, Fault};
+use crate::learned::{Clock, Learned, LoopContext};
+use crate::observer::{Event, FailedIteration};
 
 /// Iterations in a row in which the physics of most episodes may fail.
 const MOST_FAULTY_ITERATIONS: u64 = 3;
@@ -15,7 +16,6 @@ const MOST_FAULTY_ITERATIONS: u64 = 3;
 /// A training by gradients between two iterations.
 pub(crate) struct Gradient<'a> {
     assembly: &'a Assembly,
-    sampler: Sampler,
     learner: Box<dyn Learner>,
     pub(crate) learned: Learned,
 }
@@ -28,12 +28,22 @@ impl Persist for Gradient<'_> {
 }
 
 /// Follows the policy's gradient, from the beginning or from where a training was interrupted.
-pub(crate) fn gradient(assembly: &Assembly, run: &mut Loop<'_>, from: Option<&Archive>) -> Result<Learned, TrainError> {
+pub(crate) fn gradient(
+    assembly: &Assembly,
+    run: &mut LoopContext<'_>,
+    from: Option<&Archive>,
+) -> Result<Learned, TrainError> {
     let budget = assembly.experiment().train.env_steps;
     let mut state = Gradient::new(assembly, from)?;
+    run.observer.on(Event::Started {
+        env_steps: budget,
+        resumed: from.map(|_| state.learned.env_steps),
+        learner: state.learner.metric_names(),
+        totals: &assembly.total_names(),
+    })?;
     run.clock = Clock::start(state.learned.wall_s);
-    while state.learned.env_steps < budget {
-        if run.stopped() {
+    while state.episodes() > 0 {
+        if (run.stopped)() {
             run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
             return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
         }
@@ -60,9 +70,7 @@ impl<'a> Gradient<'a> {
 
     /// From the beginning, with these parameters.
     pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
-        let episode_steps = assembly.experiment().train.episode_steps;
-        let sampler = Sampler::new(assembly.policy.clone(), assembly.worlds.training.make.clone(), Some(episode_steps));
-        Self { assembly, sampler, learner: assembly.learner(params), learned: Learned::default() }
+        Self { assembly, learner: assembly.learner(params), learned: Learned::default() }
     }
 
     pub(crate) fn params(&self) -> Vec<f32> {
@@ -74,9 +82,9 @@ impl<'a> Gradient<'a> {
         Ok(self.learned.checkpoint(archive))
     }
 
-    fn iterate(&mut self, run: &mut Loop<'_>) -> Result<(), TrainError> {
+    fn iterate(&mut self, run: &mut LoopContext<'_>) -> Result<(), TrainError> {
         let progress = self.progress();
-        let batch = self.collect(run.executor).or_else(|error| self.fail(None, error, run))?;
+        let batch = self.collect(run.collector, &run.experiment).or_else(|error| self.fail(None, error, run))?;
         let update = self.learn(run.executor, &batch, progress);
         let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
         self.learned.env_steps += batch.env_steps();
@@ -84,37 +92,54 @@ impl<'a> Gradient<'a> {
         let policy = &self.assembly.policy;
         let totals = policy.space().totals(&policy.design(self.learner.params()));
         let returns = mean_returns(&batch, self.assembly.experiment().discount());
-        Ok(self.learned.tell(returns, Some(&update), totals, run)?)
+        Ok(self.learned.record(returns, update.values().to_vec(), totals, run)?)
     }
 
     /// Tells the observer of an iteration that failed, with all that it takes to repeat it: the learner is as it was.
-    fn fail<T>(&mut self, batch: Option<&Batch>, error: TrainError, run: &mut Loop<'_>) -> Result<T, TrainError> {
+    fn fail<T>(
+        &mut self,
+        batch: Option<&Batch>,
+        error: TrainError,
+        run: &mut LoopContext<'_>,
+    ) -> Result<T, TrainError> {
         let (checkpoint, what) = (self.checkpoint()?, error.to_string());
-        run.observer.on(Event::Failed(&Fault { checkpoint: &checkpoint, batch, what: &what }))?;
+        run.observer.on(Event::Failed(&FailedIteration { checkpoint: &checkpoint, batch, what: &what }))?;
         Err(error)
     }
 
-    /// The share of the budget that is spent.
+    /// The share of all schedules that is done.
     fn progress(&self) -> f64 {
-        self.learned.env_steps as f64 / self.assembly.experiment().train.env_steps as f64
+        self.assembly.experiment().train.progress(self.learned.env_steps)
+    }
+
+    /// How many episodes the iteration at hand has, 0 where the budget is spent.
+    fn episodes(&self) -> u64 {
+        self.assembly.iteration_episodes(self.learned.env_steps)
     }
 
     /// The episodes of the iteration at hand.
-    fn collect(&self, executor: &dyn Executor) -> Result<Batch, TrainError> {
+    fn collect(&self, collector: &dyn Collector, experiment: &ExperimentText) -> Result<Batch, TrainError> {
         let train = &self.assembly.experiment().train;
-        let asked = Episodes {
+        let episodes = Episodes {
             seed: self.assembly.experiment().seed,
             iteration: self.learned.iterations,
-            indices: 0..train.episodes_per_iteration as u64,
+            indices: 0..self.episodes(),
             progress: self.progress(),
             kind: EpisodeKind::Training,
         };
-        Ok(self.sampler.collect(executor, self.learner.params(), &asked)?)
+        let request = EpisodesRequest {
+            experiment: experiment.clone(),
+            stage: Stage::Training,
+            params: self.params(),
+            episodes,
+            steps: Some(train.episode_steps),
+        };
+        Ok(collector.rows(&request)?.sound()?)
     }
 
     /// The update of the iteration at hand.
     fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
-        let asked = self.assembly.experiment().train.episodes_per_iteration;
+        let asked = self.episodes() as usize;
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
         if in_a_row >= MOST_FAULTY_ITERATIONS
@@ -143,14 +168,16 @@ pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
 ///
 /// # Errors
 /// Of a state that is not one of this experiment. What fails in the iteration is in the result.
-pub fn repeat(
+pub(crate) fn repeat_by(
+    collector: &dyn Collector,
+    experiment: &ExperimentText,
     assembly: &Assembly,
     from: &Archive,
     executor: &dyn Executor,
 ) -> Result<(Option<Batch>, Result<Metrics, TrainError>), StateError> {
     let mut state = Gradient::new(assembly, Some(from))?;
     let progress = state.progress();
-    Ok(match state.collect(executor) {
+    Ok(match state.collect(collector, experiment) {
         Ok(batch) => {
             let outcome = state.learn(executor, &batch, progress);
             (Some(batch), outcome)

@@ -1,13 +1,13 @@
 //! Where a training stands, whatever trains.
 
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use hwasp_algos::{Archive, Exchange, Metrics, Persist, StateError};
+use hwasp_algos::{Archive, Exchange, Persist, StateError};
 use hwasp_core::Executor;
 
 use crate::checkpoint::Checkpoint;
+use crate::collect::{Collector, ExperimentText};
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
 
@@ -15,18 +15,17 @@ use crate::observer::{Event, Observer, ObserverError};
 pub const TRAILING: usize = 11;
 
 /// What a training loop runs with.
-pub(crate) struct Loop<'a> {
+pub(crate) struct LoopContext<'a> {
+    /// The name of the experiment in requests.
+    pub(crate) experiment: ExperimentText,
+    /// Runs episodes and candidates.
+    pub(crate) collector: &'a dyn Collector,
+    /// Runs sums over rows.
     pub(crate) executor: &'a dyn Executor,
     pub(crate) observer: &'a mut dyn Observer,
-    pub(crate) stop: &'a AtomicBool,
-    pub(crate) clock: Clock,
-}
-
-impl Loop<'_> {
     /// Whether someone wants it to end.
-    pub(crate) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
+    pub(crate) stopped: &'a (dyn Fn() -> bool + Sync),
+    pub(crate) clock: Clock,
 }
 
 /// The time that a training has taken.
@@ -57,6 +56,8 @@ pub(crate) struct Learned {
     pub(crate) iterations: u64,
     pub(crate) env_steps: u64,
     pub(crate) failed_candidates: u64,
+    /// How the first of them failed.
+    pub(crate) first_failure: Option<String>,
     pub(crate) discarded_episodes: u64,
     /// Iterations in a row in which the physics of most episodes failed.
     pub(crate) faulty_iterations: u64,
@@ -67,30 +68,26 @@ pub(crate) struct Learned {
 }
 
 impl Learned {
-    /// Counts an iteration whose steps are counted already, and tells of it; a search has no update.
-    pub(crate) fn tell(
+    /// Counts an iteration whose steps are counted already, and hands its row on; a search has no metrics of a learner.
+    pub(crate) fn record(
         &mut self,
-        returns: (f64, f64),
-        update: Option<&Metrics>,
+        (discounted_return, undiscounted_return): (f64, f64),
+        learner: Vec<f64>,
         design_totals: Vec<f64>,
-        run: &mut Loop<'_>,
+        run: &mut LoopContext<'_>,
     ) -> Result<(), ObserverError> {
-        self.recent.push_back(returns);
+        self.recent.push_back((discounted_return, undiscounted_return));
         if self.recent.len() > TRAILING {
             self.recent.pop_front();
         }
         self.wall_s = run.clock.wall_s();
-        let told = |name| update.and_then(|update| update.get(name));
         run.observer.on(Event::Iteration(&MetricsRow {
             iteration: self.iterations,
             env_steps: self.env_steps,
             wall_s: self.wall_s,
-            discounted_return: returns.0,
-            undiscounted_return: returns.1,
-            kl: told("kl").unwrap_or(f64::NAN),
-            entropy: told("entropy").unwrap_or(f64::NAN),
-            // Learners without a line search take their whole step.
-            step_fraction: told("step_fraction").unwrap_or(if update.is_some() { 1.0 } else { f64::NAN }),
+            discounted_return,
+            undiscounted_return,
+            learner,
             design_totals,
         }))?;
         self.iterations += 1;
@@ -116,6 +113,7 @@ impl Persist for Learned {
         with.number("iterations", &mut self.iterations)?;
         with.number("env_steps", &mut self.env_steps)?;
         with.number("failed_candidates", &mut self.failed_candidates)?;
+        with.text("first_failure", &mut self.first_failure)?;
         with.number("discarded_episodes", &mut self.discarded_episodes)?;
         with.number("faulty_iterations", &mut self.faulty_iterations)?;
         with.number("wall_s", &mut self.wall_s)?;

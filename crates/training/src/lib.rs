@@ -1,14 +1,17 @@
 //! Trainings: the assembly of an experiment, the loops that learn and search, evaluation and statistics.
 //!
 //! A program that embeds training makes three calls: [`resolve`](hwasp_experiment::resolve) for the experiment,
-//! [`Assembly::new`], [`train`]. An [`Observer`] is told what happens on the way.
+//! [`Assembly::new`], [`train`]. An [`Observer`] is told what happens on the way. A [`Collector`] runs the episodes: threads
+//! of this process, or [`Worker`]s elsewhere.
 
 #![forbid(unsafe_code)]
 
 mod assemble;
 mod checkpoint;
+pub mod collect;
 mod error;
 mod evaluate;
+mod evaluation;
 mod gradient;
 mod learned;
 mod machine;
@@ -18,17 +21,18 @@ mod paired;
 mod search;
 pub mod stats;
 mod train;
+mod worker;
 
-pub use assemble::{AssembleError, Assembly, total_name};
+pub use assemble::{AssembleError, Assembly, Piece, total_name};
 pub use checkpoint::Checkpoint;
+pub use collect::Collector;
 pub use error::TrainError;
-pub use evaluate::{
-    EvaluateError, Evaluation, MeanInterval, SuccessRate, evaluate, evaluate_in, evaluate_native, held_out, sampler,
-};
-pub use gradient::repeat;
+pub use evaluate::{evaluate, evaluate_by, evaluate_in, evaluate_native, evaluate_native_by, held_out, sampler};
+pub use evaluation::{EvaluateError, Evaluation, MeanInterval, SuccessRate};
 pub use hwasp_problem::World;
 pub use learned::TRAILING;
 pub use metrics::MetricsRow;
-pub use observer::{Event, Fault, Observer, ObserverError};
+pub use observer::{Event, FailedIteration, Observer, ObserverError};
 pub use paired::{Change, Reference};
-pub use train::{Trained, beginning, params_at, train, train_from};
+pub use train::{Trained, beginning, params_at, repeat, train, train_by, train_from};
+pub use worker::{LocalCollector, Worker};

@@ -1,4 +1,4 @@
-//! What an iteration is told by: one row of a learning curve.
+//! One row of a learning curve: what an iteration came to.
 
 /// One iteration; what is not known is NaN.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,12 +13,8 @@ pub struct MetricsRow {
     pub discounted_return: f64,
     /// Mean undiscounted return of the same episodes (column `return`).
     pub undiscounted_return: f64,
-    /// Mean KL divergence of the update, nat.
-    pub kl: f64,
-    /// Entropy of the policy, nat.
-    pub entropy: f64,
-    /// Share of TRPO's full step that was taken, 0 for none; 1 for PPO, NaN for searches.
-    pub step_fraction: f64,
+    /// One per metric of the learner, in the order of their names ([`Event::Started`](crate::Event)); none in a search.
+    pub learner: Vec<f64>,
     /// One per design total of the table, in its order, SI.
     pub design_totals: Vec<f64>,
 }

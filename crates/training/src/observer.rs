@@ -3,7 +3,7 @@
 use hwasp_core::Batch;
 
 use crate::checkpoint::Checkpoint;
-use crate::evaluate::Evaluation;
+use crate::evaluation::Evaluation;
 use crate::metrics::MetricsRow;
 
 /// Something happened.
@@ -11,10 +11,12 @@ use crate::metrics::MetricsRow;
 pub enum Event<'a> {
     /// Training begins, or goes on.
     Started {
-        /// Real simulator steps it will take, at least.
+        /// Real simulator steps it may take, at most.
         env_steps: u64,
         /// The steps that were taken before it was interrupted, where it goes on.
         resumed: Option<u64>,
+        /// The names of the learner's metrics; none in a search.
+        learner: &'a [&'a str],
         /// The names of the design totals.
         totals: &'a [String],
     },
@@ -24,7 +26,7 @@ pub enum Event<'a> {
     /// when it was asked to stop.
     Checkpoint(&'a Checkpoint),
     /// An iteration failed, and with it the training.
-    Failed(&'a Fault<'a>),
+    Failed(&'a FailedIteration<'a>),
     /// The held-out evaluation begins.
     Evaluating,
     /// It is done.
@@ -33,7 +35,7 @@ pub enum Event<'a> {
 
 /// All that it takes to see an iteration fail again.
 #[derive(Clone, Copy, Debug)]
-pub struct Fault<'a> {
+pub struct FailedIteration<'a> {
     /// Where training stood before the iteration.
     pub checkpoint: &'a Checkpoint,
     /// What it learned from, where it came so far.

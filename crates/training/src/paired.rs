@@ -3,13 +3,16 @@
 //! Episodes of one index begin alike and meet the same noise whatever acts in them (common random numbers), so that the
 //! difference of two of them varies far less than either.
 
-use hwasp_core::{EpisodeResult, Executor, RolloutError, Stream};
+use hwasp_core::{EpisodeResult, Executor, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use crate::assemble::Assembly;
-use crate::evaluate::{EvaluateError, Evaluation, MeanInterval, mean_interval, rollouts};
+use crate::collect::{Collector, EpisodeAnswer, ExperimentText, Stage};
+use crate::evaluate::rollouts;
+use crate::evaluation::{EvaluateError, Evaluation, MeanInterval, mean_interval};
 use crate::stats::StatsError;
+use crate::worker::LocalCollector;
 
 /// What changed between two evaluations on the same episodes: means of the differences, episode by episode, with their 95 %
 /// bootstrap intervals.
@@ -28,9 +31,11 @@ pub struct Change {
 /// An evaluation that others are held against, in the world where the result has to work.
 pub struct Reference<'a> {
     assembly: &'a Assembly,
+    /// The name of its experiment in requests.
+    experiment: ExperimentText,
     /// Episodes and the root seed of their starts.
     asked: (u64, u64),
-    executor: &'a dyn Executor,
+    collector: Box<dyn Collector + 'a>,
     /// What it is worth.
     pub evaluation: Evaluation,
     trials: Vec<Option<Trial>>,
@@ -45,26 +50,32 @@ impl<'a> Reference<'a> {
         asked: (u64, u64),
         executor: &'a dyn Executor,
     ) -> Result<Self, EvaluateError> {
-        let (evaluation, trials) = tried(assembly, design, params, asked, executor)?;
-        Ok(Self { assembly, asked, executor, evaluation, trials })
+        Self::by(Box::new(LocalCollector::new(assembly, executor)?), assembly, design, params, asked)
+    }
+
+    /// The same, of episodes that `collector` gives.
+    pub fn by(
+        collector: Box<dyn Collector + 'a>,
+        assembly: &'a Assembly,
+        design: &[f64],
+        params: &[f32],
+        asked: (u64, u64),
+    ) -> Result<Self, EvaluateError> {
+        let experiment = ExperimentText::of(assembly.experiment())?;
+        let stage = Stage::Deployment(design.to_vec());
+        let results = rollouts(&*collector, assembly, experiment.clone(), stage, params, asked)?;
+        let (evaluation, trials) = (Evaluation::new(&results, asked)?, trials(&results));
+        Ok(Self { assembly, experiment, asked, collector, evaluation, trials })
     }
 
     /// Another design or another controller on the same episodes, and what that changes.
     pub fn against(&self, design: &[f64], params: &[f32]) -> Result<(Evaluation, Change), EvaluateError> {
-        let (evaluation, trials) = tried(self.assembly, design, params, self.asked, self.executor)?;
-        Ok((evaluation, Change::between(&self.trials, &trials, self.asked.1)?))
+        let stage = Stage::Deployment(design.to_vec());
+        let experiment = self.experiment.clone();
+        let results = rollouts(&*self.collector, self.assembly, experiment, stage, params, self.asked)?;
+        let change = Change::between(&self.trials, &trials(&results), self.asked.1)?;
+        Ok((Evaluation::new(&results, self.asked)?, change))
     }
-}
-
-fn tried(
-    assembly: &Assembly,
-    design: &[f64],
-    params: &[f32],
-    asked: (u64, u64),
-    executor: &dyn Executor,
-) -> Result<(Evaluation, Vec<Option<Trial>>), EvaluateError> {
-    let results = rollouts(assembly, &assembly.worlds.deployment, design, params, asked, executor)?;
-    Ok((Evaluation::new(&results, asked)?, trials(&results)))
 }
 
 /// How one episode went.
@@ -75,7 +86,7 @@ struct Trial {
 }
 
 /// The episodes by index; none where the physics failed.
-fn trials(results: &[Result<EpisodeResult, RolloutError>]) -> Vec<Option<Trial>> {
+fn trials(results: &[EpisodeAnswer]) -> Vec<Option<Trial>> {
     let trial = |episode: &EpisodeResult| Trial {
         undiscounted_return: episode.undiscounted_return,
         success: episode.outcome.as_ref().map(|outcome| outcome.success),
@@ -113,11 +124,10 @@ mod tests {
         let before = [Some(trial(100.0, true)), Some(trial(-50.0, false)), None, Some(trial(7.0, true))];
         let after = [Some(trial(99.0, false)), Some(trial(-51.0, false)), Some(trial(1.0, true)), None];
         let change = Change::between(&before, &after, 1).unwrap();
-        // Returns far apart, and each but one lower: there is nothing uncertain about it.
-        let one = MeanInterval { mean: -1.0, low: -1.0, high: -1.0 };
+        // Returns far apart, and each but one lower. Two episodes carry no interval.
+        let one = MeanInterval { mean: -1.0, interval: None };
         assert_eq!((change.episodes, change.undiscounted_return), (2, one));
-        let success = change.success.unwrap();
-        assert_eq!((success.mean, success.low, success.high), (-0.5, -1.0, 0.0));
+        assert_eq!(change.success, Some(MeanInterval { mean: -0.5, interval: None }));
     }
 
     #[test]

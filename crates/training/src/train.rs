@@ -1,17 +1,21 @@
 //! Trainings: from an assembled experiment to parameters and their evaluation.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_core::Executor;
+use hwasp_algos::{Archive, Metrics};
+use hwasp_core::{Batch, Executor};
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
+use crate::collect::{Collector, ExperimentText};
 use crate::error::TrainError;
-use crate::evaluate::{Evaluation, evaluate};
-use crate::gradient::{Gradient, gradient};
-use crate::learned::{Clock, Loop};
+use crate::evaluate::evaluate_by;
+use crate::evaluation::Evaluation;
+use crate::gradient::{Gradient, gradient, repeat_by};
+use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer};
 use crate::search::{best_so_far, search};
+use crate::worker::LocalCollector;
 
 /// What a training gave.
 #[derive(Clone, Debug)]
@@ -30,6 +34,8 @@ pub struct Trained {
     pub training_return: f64,
     /// Candidates of a search that failed and ranked last; none where the method does not search.
     pub failed_candidates: Option<u64>,
+    /// How the first of them failed: episode, step and cause.
+    pub first_failure: Option<String>,
     /// Episodes whose physics failed; their steps are charged, and nothing was learned from them.
     pub discarded_episodes: u64,
     /// The final design on held-out starts.
@@ -59,17 +65,35 @@ pub fn train_from(
     observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Trained, TrainError> {
+    train_by(&LocalCollector::new(assembly, executor)?, from, assembly, executor, observer, stop)
+}
+
+/// The same, with episodes and candidates that `collector` gives: the bits do not depend on who answers.
+pub fn train_by(
+    collector: &dyn Collector,
+    from: Option<&Checkpoint>,
+    assembly: &Assembly,
+    executor: &dyn Executor,
+    observer: &mut dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Trained, TrainError> {
     let spec = assembly.experiment();
-    let (totals, resumed) = (assembly.total_names(), from.map(|checkpoint| checkpoint.env_steps));
-    observer.on(Event::Started { env_steps: spec.train.env_steps, resumed, totals: &totals })?;
-    let mut run = Loop { executor, observer, stop, clock: Clock::start(0.0) };
+    let stopped = || stop.load(Ordering::Relaxed);
+    let mut run = LoopContext {
+        experiment: ExperimentText::of(spec)?,
+        collector,
+        executor,
+        observer: &mut *observer,
+        stopped: &stopped,
+        clock: Clock::start(0.0),
+    };
     let from = from.map(|checkpoint| &checkpoint.archive);
     let learned =
         if spec.method.searches() { search(assembly, &mut run, from)? } else { gradient(assembly, &mut run, from)? };
     let wall_s = run.clock.wall_s();
     observer.on(Event::Evaluating)?;
     let asked = (spec.train.evaluation_episodes as u64, spec.train.evaluation_seed);
-    let evaluation = evaluate(assembly, &learned.params, asked, executor)?;
+    let evaluation = evaluate_by(collector, assembly, &learned.params, asked)?;
     observer.on(Event::Evaluated(&evaluation))?;
     let (training_discounted_return, training_return) = learned.trailing();
     Ok(Trained {
@@ -79,6 +103,7 @@ pub fn train_from(
         training_discounted_return,
         training_return,
         failed_candidates: spec.method.searches().then_some(learned.failed_candidates),
+        first_failure: learned.first_failure,
         discarded_episodes: learned.discarded_episodes,
         evaluation,
         params: learned.params,
@@ -100,4 +125,18 @@ pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32
         return best_so_far(assembly, archive);
     }
     Ok(Gradient::new(assembly, Some(archive))?.params())
+}
+
+/// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
+///
+/// # Errors
+/// Of a state that is not one of this experiment. What fails in the iteration is in the result.
+pub fn repeat(
+    assembly: &Assembly,
+    from: &Archive,
+    executor: &dyn Executor,
+) -> Result<(Option<Batch>, Result<Metrics, TrainError>), TrainError> {
+    let (collector, experiment) =
+        (LocalCollector::new(assembly, executor)?, ExperimentText::of(assembly.experiment())?);
+    Ok(repeat_by(&collector, &experiment, assembly, from, executor)?)
 }

@@ -159,3 +159,38 @@ fn a_covariance_that_would_not_fit_is_refused() {
     assert!(assembly("cmaes", &[wide[0], wide[1], ("cmaes.separable", "true")]).is_ok());
     assert!(assembly("cmaes-rl", &[wide[0], wide[1], ("cmaes.popsize", "4")]).is_ok());
 }
+
+/// A search said how many candidates failed and nothing of how, and where all did, that they did: a learner tells episode, step
+/// and reason.
+#[test]
+fn failing_candidates_tell_their_cause() {
+    for (method, settings) in [
+        ("cmaes", &[("search.episodes", "1"), ("cmaes.sigma", "0.5")][..]),
+        ("ars", &[("ars.variant", "v2-t"), ("ars.noise_std", "0.5")]),
+        ("cmaes-rl", &[("cmaes.popsize", "5")]),
+    ] {
+        let fail_above = |fastest: f64| {
+            let mut assembly = assembly(method, settings).unwrap();
+            spoil(
+                &mut assembly,
+                move |effort, step| {
+                    if effort[0].abs() > fastest { Step { reward: f64::NAN, ..step } } else { step }
+                },
+            );
+            train(&assembly, &Serial, &mut (), &AtomicBool::new(false))
+        };
+        let error = fail_above(-1.0).unwrap_err().to_string();
+        assert!(error.starts_with("all ") && error.contains(" candidates of generation 0 failed, "), "{error}");
+        // All of the same cause, and the first in the first step of its first episode.
+        let counts: Vec<&str> = error.split(' ').filter(|word| word.parse::<u64>().is_ok()).take(3).collect();
+        assert_eq!(counts[0], counts[2], "{error}");
+        let first = error.split_once(" of them as the first: ").unwrap().1;
+        assert!(first.starts_with("episode 0 of iteration 0 (seed "), "{first}");
+        assert!(first.ends_with(") failed at step 0: the reward is NaN"), "{first}");
+
+        let some = fail_above(FASTEST).unwrap();
+        assert!(some.failed_candidates > Some(0), "{method}");
+        let first = some.first_failure.unwrap();
+        assert!(first.starts_with("episode ") && first.ends_with(": the reward is NaN"), "{method}: {first}");
+    }
+}

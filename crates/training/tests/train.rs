@@ -28,6 +28,7 @@ fn finish(assembly: &Assembly, observer: &mut dyn Observer) -> Trained {
 struct Recorder {
     events: String,
     rows: Vec<MetricsRow>,
+    learner: Vec<String>,
     stop: AtomicBool,
     stop_after: Option<usize>,
 }
@@ -35,7 +36,10 @@ struct Recorder {
 impl Observer for Recorder {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         self.events.push(match event {
-            Event::Started { .. } => 'S',
+            Event::Started { learner, .. } => {
+                self.learner = learner.iter().map(ToString::to_string).collect();
+                'S'
+            }
             Event::Iteration(row) => {
                 self.rows.push(row.clone());
                 'i'
@@ -218,14 +222,20 @@ fn trpo_trains_by_every_method() {
         let run = |executor| {
             let mut recorder = Recorder::default();
             let trained = train(&assembly, executor, &mut recorder, &AtomicBool::new(false)).unwrap();
-            (trained.params, recorder.rows)
+            (trained.params, recorder.rows, recorder.learner)
         };
-        let (params, rows) = run(&Serial);
+        let (params, rows, names) = run(&Serial);
         assert_ne!(params, assembly.init(), "{method}");
         assert_eq!(params, run(&Threads::new(2).unwrap()).0, "{method}");
         if !method.ends_with("-rl") {
-            assert!(rows.iter().all(|row| row.kl <= 0.01 && row.step_fraction <= 1.0), "{method}: {rows:?}");
-            assert!(rows.iter().any(|row| row.kl > 0.0 && row.step_fraction > 0.0), "{method}: {rows:?}");
+            // Divergence and the share of the full step, by their places among the names.
+            let place = |name| names.iter().position(|known| known == name).unwrap();
+            let (kl, fraction) = (place("kl"), place("step_fraction"));
+            assert!(
+                rows.iter().all(|row| row.learner[kl] <= 0.01 && row.learner[fraction] <= 1.0),
+                "{method}: {rows:?}"
+            );
+            assert!(rows.iter().any(|row| row.learner[kl] > 0.0 && row.learner[fraction] > 0.0), "{method}: {rows:?}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hwasp_runs::text::Shown;
+use hwasp_runs::text::ReadableUnit;
 use hwasp_workshop::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
 
 /// Travel between the printed rows of free closing, mm.
@@ -26,7 +26,7 @@ pub(crate) fn design(report: &DesignReport) -> String {
 /// A group of one parameter.
 fn one(report: &GroupReport, widest: usize) -> String {
     let group = &report.group;
-    let shown = Shown::of(group);
+    let shown = ReadableUnit::of(group);
     let (lo, hi) = (shown.short(group.limits[0]), shown.with_unit(group.limits[1]));
     let mut text = format!(
         "  {:<widest$}  {:>16}   {:>5.1} % of the way from {lo} to {hi}{}\n",
@@ -44,7 +44,7 @@ fn one(report: &GroupReport, widest: usize) -> String {
 /// A group of like parameters: what they are together, and their range.
 fn many(report: &GroupReport, widest: usize) -> String {
     let group = &report.group;
-    let shown = Shown::of(group);
+    let shown = ReadableUnit::of(group);
     let (lo, hi) = (shown.short(group.limits[0]), shown.with_unit(group.limits[1]));
     let count = group.values.len();
     let line = |name: &str, total: f64, values: &[f64], more: &str| {
@@ -63,7 +63,7 @@ fn many(report: &GroupReport, widest: usize) -> String {
     text
 }
 
-fn best(report: &GroupReport, shown: &Shown) -> String {
+fn best(report: &GroupReport, shown: &ReadableUnit) -> String {
     report.group.optimum.map_or(String::new(), |best| format!(" (best known {})", shown.long(best)))
 }
 

@@ -73,8 +73,7 @@ fn changed(change: &Change) -> String {
 }
 
 fn interval(figure: &MeanInterval, scale: f64, decimals: usize) -> String {
-    let [mean, low, high] = [figure.mean, figure.low, figure.high].map(|x| format!("{:.decimals$}", scale * x));
-    format!("{mean} [{low}, {high}]")
+    format!("{:.decimals$}", figure.scaled(scale))
 }
 
 /// What errors of the parameters do, the costliest first.

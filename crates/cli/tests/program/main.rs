@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
 mod arguments;
+mod comparisons;
 mod designs;
 #[cfg(target_os = "linux")]
 mod errors;

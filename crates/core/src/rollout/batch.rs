@@ -2,39 +2,48 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::{RolloutError, discounted};
 use crate::environment::{End, Outcome};
-use crate::policy::{HardwarePolicy, Policy};
 
 /// One episode of a [`Batch`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Episode {
     /// Its rows in the batch.
     pub rows: Range<usize>,
     /// How it ended.
     pub end: End,
     /// What the controller would have seen next: the state whose value a truncated episode is bootstrapped from.
+    #[serde(with = "crate::bits")]
     pub last_obs: Vec<f32>,
     /// The law's state there, SI.
+    #[serde(with = "crate::bits")]
     pub last_state: Vec<f32>,
     /// What the episode was about and no sensor told, SI.
+    #[serde(with = "crate::bits")]
     pub context: Vec<f32>,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
 }
 
 /// Whole episodes, one row per step, an episode's rows one after the other.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Batch {
     /// Controller inputs `[rows × obs_dim]`.
+    #[serde(with = "crate::bits")]
     pub obs: Vec<f32>,
     /// The law's state `[rows × state_dim]`, SI.
+    #[serde(with = "crate::bits")]
     pub state: Vec<f32>,
     /// Actions as sampled, not clipped `[rows × action_dim]`, SI.
+    #[serde(with = "crate::bits")]
     pub action: Vec<f32>,
     /// Their log-probabilities.
+    #[serde(with = "crate::bits")]
     pub log_prob: Vec<f32>,
     /// Rewards.
+    #[serde(with = "crate::bits")]
     pub reward: Vec<f64>,
     /// The episodes, by index, without those whose physics failed.
     pub episodes: Vec<Episode>,
@@ -58,17 +67,39 @@ impl Batch {
         self.episodes.iter().map(|e| discounted(&self.reward[e.rows.clone()], discount)).collect()
     }
 
-    /// Makes room for so many rows in all, and no more: what grows by doubling takes up to twice as much.
-    pub(super) fn reserve(&mut self, rows: usize, policy: &HardwarePolicy) {
-        let more = rows - self.rows();
-        self.obs.reserve_exact(more * policy.obs_dim());
-        self.state.reserve_exact(more * policy.state_dim());
-        self.action.reserve_exact(more * policy.action_dim());
-        self.log_prob.reserve_exact(more);
-        self.reward.reserve_exact(more);
+    /// Batches of consecutive episodes as one, in their order.
+    pub fn join(parts: Vec<Self>) -> Self {
+        let mut parts = parts.into_iter();
+        let mut batch = parts.next().unwrap_or_default();
+        batch.reserve(parts.as_slice());
+        for part in parts {
+            batch.append(part);
+        }
+        batch
     }
 
-    pub(super) fn append(&mut self, other: Self) {
+    /// The batch, where at least one of its episodes is of use.
+    ///
+    /// # Errors
+    /// The first of those whose physics failed, where all did.
+    pub fn sound(self) -> Result<Self, RolloutError> {
+        match self.faults.first() {
+            Some(fault) if self.episodes.is_empty() => Err(fault.clone()),
+            _ => Ok(self),
+        }
+    }
+
+    /// Makes room for what is to be appended, and no more: what grows by doubling takes up to twice as much.
+    fn reserve(&mut self, more: &[Self]) {
+        let sum = |length: fn(&Self) -> usize| more.iter().map(length).sum();
+        self.obs.reserve_exact(sum(|b| b.obs.len()));
+        self.state.reserve_exact(sum(|b| b.state.len()));
+        self.action.reserve_exact(sum(|b| b.action.len()));
+        self.log_prob.reserve_exact(sum(|b| b.log_prob.len()));
+        self.reward.reserve_exact(sum(|b| b.reward.len()));
+    }
+
+    fn append(&mut self, other: Self) {
         let at = self.rows();
         self.obs.extend(other.obs);
         self.state.extend(other.state);

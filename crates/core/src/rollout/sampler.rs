@@ -45,20 +45,23 @@ impl Sampler {
     /// Where a reward or a log-probability is no number, or where the physics failed in every episode. Told is the one with
     /// the lowest index, whatever the number of workers.
     pub fn collect(&self, executor: &dyn Executor, params: &[f32], episodes: &Episodes) -> Result<Batch, RolloutError> {
+        self.collect_part(executor, params, episodes)?.sound()
+    }
+
+    /// The same of episodes that are a part of those that were asked for: [`Batch::join`] puts parts together, and
+    /// [`Batch::sound`] sees whether all failed.
+    ///
+    /// # Errors
+    /// Where a reward or a log-probability is no number.
+    pub fn collect_part(
+        &self,
+        executor: &dyn Executor,
+        params: &[f32],
+        episodes: &Episodes,
+    ) -> Result<Batch, RolloutError> {
         let lanes = lanes(executor, &episodes.indices);
         let parts = self.jobs(executor, params, episodes, lanes, Keep::Rows, |lanes, _| lanes.batch());
-        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let rows = parts.iter().map(Batch::rows).sum::<usize>();
-        let mut parts = parts.into_iter();
-        let mut batch = parts.next().unwrap_or_default();
-        batch.reserve(rows, &self.policy);
-        for part in parts {
-            batch.append(part);
-        }
-        match batch.faults.first() {
-            Some(fault) if batch.episodes.is_empty() => Err(fault.clone()),
-            _ => Ok(batch),
-        }
+        Ok(Batch::join(parts.into_iter().collect::<Result<_, _>>()?))
     }
 
     /// Runs the episodes as [`collect`](Self::collect) does, with the same bits, and keeps of each what it came to, in the
@@ -67,6 +70,22 @@ impl Sampler {
     /// # Errors
     /// As those of [`collect`](Self::collect).
     pub fn outcomes(
+        &self,
+        executor: &dyn Executor,
+        params: &[f32],
+        episodes: &Episodes,
+        discount: f64,
+    ) -> Result<Vec<Result<EpisodeResult, RolloutError>>, RolloutError> {
+        let results = self.outcomes_part(executor, params, episodes, discount)?;
+        all_failed(&results).map_or(Ok(results), Err)
+    }
+
+    /// The same of episodes that are a part of those that were asked for: parts are put together one after the other, and
+    /// [`all_failed`] sees whether all failed.
+    ///
+    /// # Errors
+    /// As those of [`collect_part`](Self::collect_part).
+    pub fn outcomes_part(
         &self,
         executor: &dyn Executor,
         params: &[f32],
@@ -84,10 +103,7 @@ impl Sampler {
                 results.extend(part?);
             }
         }
-        match results.first() {
-            Some(Err(fault)) if results.iter().all(Result::is_err) => Err(fault.clone()),
-            _ => Ok(results),
-        }
+        Ok(results)
     }
 
     /// Runs episodes in jobs of so many lanes at most, and returns what `result` makes of each job, in order.
@@ -134,6 +150,12 @@ impl Sampler {
         self.idle().append(&mut lanes.environments);
         result
     }
+}
+
+/// The first failure, where the physics of every episode failed.
+pub fn all_failed(results: &[Result<EpisodeResult, RolloutError>]) -> Option<RolloutError> {
+    let first = results.first()?.as_ref().err()?;
+    results.iter().all(Result::is_err).then(|| first.clone())
 }
 
 /// Episodes of one job: as many as give every worker one, up to [`LANES`].

@@ -1,7 +1,7 @@
 //! The design that was found, between its limits.
 
 use hwasp_plot::bars;
-use hwasp_runs::text::Shown;
+use hwasp_runs::text::ReadableUnit;
 use hwasp_workshop::design::{GroupReport, HandReport};
 use hwasp_workshop::parts::JointParts;
 use maud::{Markup, html};
@@ -53,7 +53,7 @@ fn table(groups: &[GroupReport]) -> Markup {
 }
 
 fn row(report: &GroupReport) -> Markup {
-    let (group, shown) = (&report.group, Shown::of(&report.group));
+    let (group, shown) = (&report.group, ReadableUnit::of(&report.group));
     let count = group.values.len();
     let [lo, hi] = group.limits.map(|limit| limit * count as f64);
     let position = if hi > lo { ((group.total - lo) / (hi - lo)).clamp(0.0, 1.0) } else { 0.0 };
@@ -92,7 +92,7 @@ fn meter(position: f64) -> Markup {
 
 /// The values of a group of many.
 fn each(report: &GroupReport) -> Markup {
-    let shown = Shown::of(&report.group);
+    let shown = ReadableUnit::of(&report.group);
     let values: Vec<f64> = report.group.as_built.iter().map(|value| value / shown.to_si).collect();
     let name = spaced(&report.name);
     let label = format!("{name}, each of {} ({})", values.len(), shown.unit);

@@ -11,7 +11,7 @@ use super::provenance::not_yet;
 use crate::figure::{gallery, picture};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{change, decimal, interval, percent, rate_interval, spaced};
+use crate::words::{change, decimal, mean_interval, percent, rate_interval, spaced};
 
 pub(crate) fn section(run: &Run) -> Section {
     let (line, then) =
@@ -119,7 +119,7 @@ fn worth(list: &PartsList) -> Markup {
                             td.n data-label="change of return" {
                                 @match step {
                                     Some(Change { undiscounted_return: figure, .. }) => {
-                                        div { (change(figure.mean, 1)) br; small { (interval(figure.low, figure.high, 1)) } }
+                                        div { (change(figure.mean, 1)) br; small { (mean_interval(figure, 1)) } }
                                     }
                                     None => "–",
                                 }

@@ -27,6 +27,9 @@ pub(crate) fn section(run: &Run) -> Section {
                 @if let Some(failed) = summary.failed_candidates {
                     tr { th scope="row" { "candidates that failed" } td { (grouped(failed)) } }
                 }
+                @if let Some(first) = &summary.first_failure {
+                    tr { th scope="row" { "how the first of them failed" } td { (first) } }
+                }
                 tr { th scope="row" { "discarded episodes" } td { (grouped(summary.discarded_episodes)) } }
                 tr { th scope="row" { "SHA-256 of the experiment" } td { code.hash { (experiment_hash(&run.experiment)) } } }
             }

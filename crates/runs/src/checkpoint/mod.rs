@@ -87,16 +87,19 @@ fn array(tensor: &TensorView<'_>) -> Option<Array> {
 }
 
 /// Over the header without its checksum, and name, kind, length and bytes of each array in the order of names.
-fn checksum<'a>(header: &Header, arrays: impl Iterator<Item = (&'a str, Dtype, &'a [u8])>) -> String {
+fn checksum<'a>(
+    header: &Header,
+    arrays: impl Iterator<Item = (&'a str, Dtype, &'a [u8])>,
+) -> Result<String, CheckpointError> {
     let mut hash = Sha256::new();
     let plain = Header { checksum: String::new(), ..header.clone() };
-    hash.update(serde_json::to_vec(&plain).unwrap_or_default());
+    hash.update(serde_json::to_vec(&plain).map_err(|e| CheckpointError::Header(e.to_string()))?);
     for (name, kind, bytes) in arrays {
         hash.update(name.as_bytes());
         hash.update(format!("\n{kind:?} {}\n", bytes.len()).as_bytes());
         hash.update(bytes);
     }
-    hex(hash.finalize().as_slice())
+    Ok(hex(hash.finalize().as_slice()))
 }
 
 /// A checkpoint as bytes of a file, for the experiment with this hash; `fault`: what failed in the iteration that follows.
@@ -112,7 +115,7 @@ pub fn encode(checkpoint: &Checkpoint, experiment: &str, fault: Option<&str>) ->
         fault: fault.map(str::to_owned),
         checksum: String::new(),
     };
-    header.checksum = checksum(&header, pieces.iter().map(|(name, (kind, _, b))| (name.as_str(), *kind, &b[..])));
+    header.checksum = checksum(&header, pieces.iter().map(|(name, (kind, _, b))| (name.as_str(), *kind, &b[..])))?;
     let views = pieces
         .iter()
         .map(|(name, (kind, length, b))| Ok((name.as_str(), TensorView::new(*kind, vec![*length], b)?)))
@@ -131,7 +134,7 @@ pub fn decode(bytes: &[u8], experiment: &str) -> Result<Checkpoint, CheckpointEr
     let file = SafeTensors::deserialize(bytes)?;
     let mut tensors = file.tensors();
     tensors.sort_by(|a, b| a.0.cmp(&b.0));
-    let found = checksum(&header, tensors.iter().map(|(name, t)| (name.as_str(), t.dtype(), t.data())));
+    let found = checksum(&header, tensors.iter().map(|(name, t)| (name.as_str(), t.dtype(), t.data())))?;
     if found != header.checksum {
         return Err(CheckpointError::Checksum);
     }

@@ -55,7 +55,7 @@ fn what_is_no_checkpoint_of_this_experiment_is_refused_by_name() {
         change(&mut header);
         let data = [0; 8];
         let view = TensorView::new(tensor, vec![8 / tensor.bitsize().div_ceil(8)], &data).unwrap();
-        header.checksum = checksum(&header, [("a", tensor, &data[..])].into_iter());
+        header.checksum = checksum(&header, [("a", tensor, &data[..])].into_iter()).unwrap();
         let text = serde_json::to_string(&header).unwrap();
         serialize([("a", view)], Some(HashMap::from([(KEY.to_owned(), text)]))).unwrap()
     };

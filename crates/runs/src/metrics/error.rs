@@ -4,7 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
-use super::{LONGEST_LINE, LONGEST_NAME, MOST_ROWS, MOST_TOTALS};
+use super::{LONGEST_LINE, LONGEST_NAME, MOST_ROWS};
 
 /// Why a metrics table cannot be written or read. Lines count from 1, the header among them.
 #[derive(Debug, Error)]
@@ -12,19 +12,23 @@ pub enum MetricsError {
     /// The file itself.
     #[error("metrics cannot be read or written: {0}")]
     Io(#[from] io::Error),
-    /// A design total's name that would not survive in a header.
+    /// A name of a metric or a design total that would not survive in a header.
     #[error(
-        "`{name}` cannot name a design total: use 1 to {LONGEST_NAME} letters, digits, `_`, `-` and `.`, and no name twice"
+        "`{name}` cannot name a column: use 1 to {LONGEST_NAME} letters, digits, `_`, `-` and `.`, and no name twice"
     )]
     Name {
         /// The name, cut to a readable length.
         name: String,
     },
-    /// More design totals than a table may have.
-    #[error("{found} design totals are more than {MOST_TOTALS}")]
-    Totals {
+    /// More columns than a table may have.
+    #[error("{found} {what} are more than {most}")]
+    Columns {
+        /// Of which kind.
+        what: &'static str,
         /// How many there are.
         found: usize,
+        /// How many there may be.
+        most: usize,
     },
     /// The first line is not a header of this table.
     #[error("line 1 is not a header of metrics: column {column} is `{found}`, expected `{expected}`")]
@@ -99,7 +103,7 @@ impl MetricsError {
 }
 
 /// The beginning of a text from outside, fit for an error message.
-pub(super) fn shown(text: &str) -> String {
+pub(super) fn shorten(text: &str) -> String {
     let mut cut: String = text.chars().take(40).flat_map(char::escape_debug).collect();
     if text.chars().nth(40).is_some() {
         cut.push('…');

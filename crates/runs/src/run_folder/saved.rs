@@ -8,6 +8,7 @@ use std::sync::Arc;
 use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
 use hwasp_settings::text::shorten;
 use hwasp_training::{Assembly, params_at};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::Provenance;
@@ -18,7 +19,7 @@ use crate::layout::{LARGEST_SUMMARY, METRICS, POLICY, PROVENANCE, SUMMARY};
 use crate::metrics::MetricsTable;
 use crate::policy_file::{LARGEST_POLICY, read_policy};
 use crate::store::CheckpointStore;
-use crate::summary::Summary;
+use crate::summary::{Summary, values_hash};
 
 /// A run that was written before.
 pub struct SavedRun {
@@ -104,7 +105,25 @@ pub fn saved_experiment(path: &Path, assignments: &[String], catalogue: &Catalog
     let text = String::from_utf8_lossy(&text);
     let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
     let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
-    Ok(resolve(layers, None, catalogue)?)
+    let experiment = resolve(layers, None, catalogue)?;
+    check_unchanged(path, &text)?;
+    Ok(experiment)
+}
+
+/// Refuses the experiment of a finished run that is not the one it was trained with. A summary that cannot be read is the
+/// business of those who need it.
+fn check_unchanged(run: &Path, experiment: &str) -> Result<(), RunError> {
+    let Ok(Some(Trained { experiment_sha256: Some(trained) })) = saved_json(&run.join(SUMMARY)) else { return Ok(()) };
+    if values_hash(experiment).is_some_and(|found| found == trained) {
+        return Ok(());
+    }
+    Err(RunError::Edited { path: run.join(EXPERIMENT) })
+}
+
+/// What a summary says of the experiment.
+#[derive(Deserialize)]
+struct Trained {
+    experiment_sha256: Option<String>,
 }
 
 /// The figures of a run folder.

@@ -8,14 +8,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use hwasp_experiment::{EXPERIMENT, Experiment};
-use hwasp_training::{Assembly, Checkpoint, Event, Fault, Observer, ObserverError, Trained};
+use hwasp_training::{Assembly, Checkpoint, Event, FailedIteration, Observer, ObserverError, Trained};
 
 use super::lock::{LOCK, RunLock};
-use super::table::Table;
+use super::table::{Columns, Table};
 use super::{Provenance, SavedRun};
 use crate::checkpoint::experiment_hash;
 use crate::error::{RunError, encode, io_error};
-use crate::files::{self, Disk, Files, json, read_limited, told};
+use crate::files::{self, Disk, Files, json, read_limited, with_file_above};
 use crate::layout::{DESIGN, METRICS, POLICY, PROVENANCE, SUMMARY};
 use crate::policy_file::write_policy;
 use crate::store::{CheckpointStore, Found};
@@ -42,7 +42,7 @@ impl Default for Keeping {
 
 /// A folder being written: an [`Observer`] that keeps learning curve and checkpoints, and a place for the result.
 ///
-/// What cannot be written while training goes on is kept in memory, told as a warning and tried again; it is an error only
+/// What cannot be written while training goes on is kept in memory, warned of and tried again; it is an error only
 /// at the end.
 #[derive(Debug)]
 pub struct RunFolder {
@@ -95,7 +95,7 @@ impl RunFolder {
     /// Creates the folder and writes what is known before training. A folder that exists is not touched.
     pub fn create(path: &Path, spec: &Experiment, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
         if let Some(parent) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-            fs::create_dir_all(parent).map_err(|source| io_error("create", path, told(parent, source)))?;
+            fs::create_dir_all(parent).map_err(|source| io_error("create", path, with_file_above(parent, source)))?;
         }
         match fs::create_dir(path) {
             Ok(()) => {}
@@ -107,6 +107,10 @@ impl RunFolder {
             Err(source) => return Err(io_error("create", path, source)),
         }
         let folder = Self::new(path, spec, provenance, keeping)?;
+        // Between the look and the lock, another process may have been here.
+        if !is_blank(path) {
+            return Err(RunError::Exists { path: path.to_owned() });
+        }
         folder.write_head()?;
         Ok(folder)
     }
@@ -135,6 +139,10 @@ impl RunFolder {
             None => provenance,
         };
         let mut folder = Self::new(path, spec, &provenance, keeping)?;
+        // Between the look and the lock, another process may have finished it.
+        if path.join(SUMMARY).is_file() {
+            return Err(RunError::Finished { path: path.to_owned() });
+        }
         let found = folder.store.newest()?;
         folder.store.set_aside(&found)?;
         folder.resumed = found.checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.iteration);
@@ -283,18 +291,18 @@ impl RunFolder {
         }
     }
 
-    fn keep_fault(&mut self, fault: &Fault<'_>) {
-        self.keep_or_warn(fault.checkpoint);
-        match self.store.write_fault(fault) {
+    fn keep_failed(&mut self, failed: &FailedIteration<'_>) {
+        self.keep_or_warn(failed.checkpoint);
+        match self.store.write_failed(failed) {
             Ok(path) => self.fault = Some(path),
             Err(error) => tracing::warn!("what failed could not be written down: {error}"),
         }
     }
 
     /// Begins the learning curve, or cuts it back to the checkpoint that training goes on from.
-    fn begin(&mut self, totals: &[String]) -> Result<(), RunError> {
+    fn begin(&mut self, columns: Columns<'_>) -> Result<(), RunError> {
         let path = self.path.join(METRICS);
-        self.table = Some(Table::resume(&path, &*self.keeping.files, totals, self.resumed)?);
+        self.table = Some(Table::resume(&path, &*self.keeping.files, columns, self.resumed)?);
         self.last_checkpoint = Instant::now();
         Ok(())
     }
@@ -304,7 +312,7 @@ impl Observer for RunFolder {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         let boxed = |error| ObserverError(Box::new(error));
         match event {
-            Event::Started { totals, .. } => self.begin(totals).map_err(boxed)?,
+            Event::Started { learner, totals, .. } => self.begin(Columns { learner, totals }).map_err(boxed)?,
             Event::Iteration(row) => {
                 if let Some(table) = &mut self.table {
                     table.push(row).map_err(boxed)?;
@@ -312,7 +320,7 @@ impl Observer for RunFolder {
                 self.write_rows();
             }
             Event::Checkpoint(checkpoint) => self.keep_or_warn(checkpoint),
-            Event::Failed(fault) => self.keep_fault(fault),
+            Event::Failed(failed) => self.keep_failed(failed),
             Event::Evaluating | Event::Evaluated(_) => {}
         }
         Ok(())

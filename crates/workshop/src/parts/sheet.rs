@@ -155,6 +155,5 @@ fn worth(list: &PartsList) -> String {
 }
 
 fn interval(figure: &MeanInterval, scale: f64, decimals: usize) -> String {
-    let [mean, low, high] = [figure.mean, figure.low, figure.high].map(|x| format!("{:.decimals$}", scale * x));
-    format!("{mean} [{low}, {high}]")
+    format!("{:.decimals$}", figure.scaled(scale))
 }

@@ -6,7 +6,7 @@ use super::Given::Made;
 use super::{Case, case, change};
 use crate::sandbox::Sandbox;
 
-const HEADER: &str = "iteration,env_steps,wall_s,discounted_return,return,kl,entropy,step_fraction,gear\n";
+const HEADER: &str = "iteration,env_steps,wall_s,discounted_return,return,learner.kl,gear\n";
 
 /// A case of a finished run with another `metrics.csv`.
 macro_rules! metrics {
@@ -46,11 +46,11 @@ fn comparison(sandbox: &Sandbox, summary: &str) {
 pub(super) const CASES: &[Case] = &[
     metrics!("An empty table", ""),
     metrics!("Another table", "a,b\n1,2\n"),
-    metrics!("A header with a column missing", HEADER.replace(",kl", "")),
+    metrics!("A header with a column missing", HEADER.replace(",wall_s", "")),
     metrics!("A row of two fields", format!("{HEADER}0,1200\n")),
-    metrics!("A word for a number", format!("{HEADER}0,many,0,0,0,0,0,0,0\n")),
-    metrics!("Negative steps", format!("{HEADER}0,-1200,0,0,0,0,0,0,0\n")),
-    metrics!("Steps that go backwards", format!("{HEADER}0,2400,0,0,0,0,0,0,0\n0,1200,0,0,0,0,0,0,0\n")),
+    metrics!("A word for a number", format!("{HEADER}0,many,0,0,0,0,0\n")),
+    metrics!("Negative steps", format!("{HEADER}0,-1200,0,0,0,0,0\n")),
+    metrics!("Steps that go backwards", format!("{HEADER}0,2400,0,0,0,0,0\n0,1200,0,0,0,0,0\n")),
     metrics!("A line without an end", "x".repeat(1 << 20)),
     metrics!("Bytes", b"\xff\xfe\0\x01\n"),
     case(
@@ -83,6 +83,7 @@ pub(super) const CASES: &[Case] = &[
         "A policy of another shape",
         Made(|s| {
             s.put_run();
+            s.forget_experiment();
             s.replace("run/experiment.toml", "[controller]\nhidden = [16]", "[controller]\nhidden = [8]");
         }),
         "hwasp eval run",

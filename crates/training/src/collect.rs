@@ -1,0 +1,239 @@
+//! Collecting apart from computing: what is asked of whoever runs episodes, and what comes back.
+//!
+//! Requests and answers are plain values. A request names the experiment by its resolved text, and streams by seed, iteration
+//! and episode, so that the answer has the same bits whoever gives it: a thread
+//! ([`LocalCollector`](crate::LocalCollector)), or a [`Worker`](crate::Worker) in another process.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use hwasp_algos::Archive;
+use hwasp_core::{Batch, EpisodeResult, Episodes, RolloutError, bits};
+use hwasp_experiment::Experiment;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Episodes, and trainings inside of a search, for whoever asks.
+pub trait Collector: Send + Sync {
+    /// Runs episodes and returns them with all of their rows, in the order of their indices. The physics of all of them may
+    /// have failed ([`Batch::sound`]).
+    ///
+    /// # Errors
+    /// [`CollectError::Rollout`] where a reward or a log-probability is no number: the first by index.
+    fn rows(&self, request: &EpisodesRequest) -> Result<Batch, CollectError>;
+
+    /// Runs the same episodes with the same bits, and keeps of each what it came to.
+    ///
+    /// # Errors
+    /// As those of [`rows`](Self::rows).
+    fn results(&self, request: &EpisodesRequest) -> Result<Vec<EpisodeAnswer>, CollectError>;
+
+    /// Trains a controller for the design of a candidate. `watch` may be given the state of the training on the way; what it
+    /// is not given has to be done again after an interruption.
+    ///
+    /// # Errors
+    /// [`CollectError::Interrupted`] where `watch` asked for it.
+    fn candidate(&self, request: &CandidateRequest, watch: &dyn Watch) -> Result<CandidateAnswer, CollectError>;
+
+    /// Calls `job(i, collector)` for every `i < count`, in any order and as many at once as it has workers. Each call has a
+    /// collector of its own, which answers on one worker.
+    fn each(&self, count: usize, job: &(dyn Fn(usize, &dyn Collector) + Sync));
+}
+
+/// Watches a training inside of a search.
+pub trait Watch: Sync {
+    /// Whether it should end.
+    fn stopped(&self) -> bool;
+
+    /// Whether its state is wanted now.
+    fn due(&self) -> bool;
+
+    /// Takes its state.
+    fn keep(&self, state: &Archive);
+}
+
+/// Nobody watches.
+impl Watch for () {
+    fn stopped(&self) -> bool {
+        false
+    }
+
+    fn due(&self) -> bool {
+        false
+    }
+
+    fn keep(&self, _: &Archive) {}
+}
+
+/// An experiment as its resolved text, shared: whoever knows the text knows the experiment.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub struct ExperimentText(Arc<str>);
+
+impl ExperimentText {
+    /// Of an experiment.
+    ///
+    /// # Errors
+    /// [`CollectError::Setup`] where it cannot be written as TOML.
+    pub fn of(experiment: &Experiment) -> Result<Self, CollectError> {
+        let text = experiment.to_toml();
+        text.map(Self::from).map_err(|error| CollectError::Setup(format!("the experiment cannot be written: {error}")))
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Whether both are the same; texts that are shared are not read for that.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self == other
+    }
+}
+
+impl From<String> for ExperimentText {
+    fn from(text: String) -> Self {
+        Self(text.into())
+    }
+}
+
+impl From<ExperimentText> for String {
+    fn from(text: ExperimentText) -> Self {
+        text.0.as_ref().to_owned()
+    }
+}
+
+/// Where episodes run, and what acts in them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Stage {
+    /// The world where one trains; the policy as it learns.
+    Training,
+    /// The world where the result has to work; the controller on hardware of this design, SI.
+    Deployment(#[serde(with = "bits")] Vec<f64>),
+    /// The world that stands in for the robot built to this design, SI; the controller.
+    StandIn(#[serde(with = "bits")] Vec<f64>),
+}
+
+/// What an episode came to; the error where its physics failed.
+pub type EpisodeAnswer = Result<EpisodeResult, RolloutError>;
+
+/// Episodes of one policy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EpisodesRequest {
+    /// The experiment.
+    pub experiment: ExperimentText,
+    /// Where they run.
+    pub stage: Stage,
+    /// Of the policy in training, of the controller alone elsewhere.
+    #[serde(with = "bits")]
+    pub params: Vec<f32>,
+    /// Which episodes, and how.
+    pub episodes: Episodes,
+    /// The steps of an episode, where not as many as the world has.
+    pub steps: Option<usize>,
+}
+
+impl EpisodesRequest {
+    /// So many requests, at most, of consecutive episodes. Their answers put together in order ([`Batch::join`], or one list
+    /// after the other) are the answer to this one.
+    pub fn split(&self, parts: usize) -> Vec<Self> {
+        let Range { start, end } = self.episodes.indices;
+        let each = (end - start).div_ceil(parts.max(1) as u64).max(1);
+        let part = |first: u64| {
+            let episodes = Episodes { indices: first..(first + each).min(end), ..self.episodes.clone() };
+            Self { episodes, ..self.clone() }
+        };
+        (start..end).step_by(each as usize).map(part).collect()
+    }
+}
+
+/// A training for the design of a candidate, inside of a search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CandidateRequest {
+    /// The experiment of the search.
+    pub experiment: ExperimentText,
+    /// The design, SI.
+    #[serde(with = "bits")]
+    pub design: Vec<f64>,
+    /// The root seed of its training.
+    pub seed: u64,
+    /// The budget of its training, simulator steps.
+    pub env_steps: u64,
+    /// The state to go on from, where it was interrupted.
+    pub from: Option<Archive>,
+}
+
+/// What the training of a candidate came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum CandidateAnswer {
+    /// It came to its end.
+    Trained {
+        /// The controller's parameters.
+        #[serde(with = "bits")]
+        controller: Vec<f32>,
+        /// Mean discounted and undiscounted return of its last iterations.
+        #[serde(with = "bits")]
+        returns: (f64, f64),
+        /// Simulator steps taken.
+        env_steps: u64,
+        /// Episodes whose physics failed.
+        discarded_episodes: u64,
+    },
+    /// It failed: it ranks last, and its whole budget is charged.
+    Failed(CandidateFailure),
+}
+
+/// Why a candidate is worth nothing.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CandidateFailure {
+    /// What went wrong; the same text for all that failed alike.
+    pub cause: String,
+    /// The same with episode and step, where it was in one.
+    pub text: String,
+}
+
+impl CandidateFailure {
+    /// A failure in an episode.
+    pub(crate) fn episode(error: &RolloutError) -> Self {
+        Self { cause: error.what.clone(), text: error.to_string() }
+    }
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, Error, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CollectError {
+    /// An episode gave a number that is none.
+    #[error(transparent)]
+    Rollout(#[from] RolloutError),
+    /// The experiment cannot be set up where it was asked for, or a state that came along is not of it.
+    #[error("{0}")]
+    Setup(String),
+    /// Whoever was asked is gone.
+    #[error("whoever was asked for episodes has not answered: {0}")]
+    Unanswered(String),
+    /// Someone asked it to stop.
+    #[error("the training of a candidate was stopped")]
+    Interrupted,
+}
+
+/// A request of any kind, for those that send them elsewhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Request {
+    /// [`Collector::rows`].
+    Rows(EpisodesRequest),
+    /// [`Collector::results`].
+    Results(EpisodesRequest),
+    /// [`Collector::candidate`].
+    Candidate(CandidateRequest),
+}
+
+/// The answer to a [`Request`] of the same name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Answer {
+    /// Episodes with their rows.
+    Rows(Batch),
+    /// What episodes came to.
+    Results(Vec<EpisodeAnswer>),
+    /// What a training came to.
+    Candidate(CandidateAnswer),
+}

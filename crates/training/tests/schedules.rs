@@ -1,0 +1,94 @@
+//! Schedules: how much of training is done, as environments and learners are told.
+
+#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+
+use std::sync::{Arc, Mutex};
+
+use hwasp_core::{EnvSpec, Environment, Step, Stream};
+use hwasp_testing::{run, small};
+use hwasp_training::Assembly;
+
+/// Writes down how much of training is done at each start.
+struct Recording {
+    inner: Box<dyn Environment>,
+    told: Arc<Mutex<Vec<f64>>>,
+}
+
+impl Environment for Recording {
+    fn spec(&self) -> &EnvSpec {
+        self.inner.spec()
+    }
+
+    fn set_progress(&mut self, progress: f64) {
+        self.told.lock().unwrap().push(progress);
+        self.inner.set_progress(progress);
+    }
+
+    fn reset(&mut self, rng: &mut Stream) {
+        self.inner.reset(rng);
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        self.inner.state(out);
+    }
+
+    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+        self.inner.step(effort, command)
+    }
+}
+
+/// An assembly whose training episodes are written down.
+fn recorded(method: &str, settings: hwasp_testing::Settings) -> (Assembly, Arc<Mutex<Vec<f64>>>) {
+    let mut assembly = Assembly::new(&small(method, settings)).unwrap();
+    let (told, whole) = (Arc::new(Mutex::new(Vec::new())), assembly.worlds.training.make.clone());
+    let recording = Arc::clone(&told);
+    assembly.worlds.training.make = Arc::new(move |horizon| {
+        Box::new(Recording { inner: whole.make(horizon), told: Arc::clone(&recording) }) as Box<dyn Environment>
+    });
+    (assembly, told)
+}
+
+/// Searches trained at progress 0 from the first generation to the last: `cmaes` and `ars` saw nothing but the easiest objects
+/// of a curriculum, noise stayed as it was at the beginning, and even the last choice was made so.
+#[test]
+fn a_search_gets_on() {
+    for (method, settings) in [("cmaes", &[][..]), ("ars", &[("ars.directions", "8")][..])] {
+        let (assembly, told) = recorded(method, settings);
+        let rows = run(&assembly, None, 1).1.rows;
+        let train = &assembly.experiment().train;
+        // A generation is as far as the steps before it.
+        let before = std::iter::once(0).chain(rows.iter().map(|row| row.env_steps));
+        let mut expected: Vec<f64> = before.take(rows.len()).map(|steps| train.progress(steps)).collect();
+        // The choice at the end is for what comes after training.
+        expected.push(1.0);
+        let mut told = std::mem::take(&mut *told.lock().unwrap());
+        told.dedup();
+        assert_eq!(told, expected, "{method}");
+        assert!(expected.len() > 3 && expected[1] > 0.0, "{method}: {expected:?}");
+    }
+}
+
+/// Further training on parts that can be bought began its schedules anew: the first iterations were at progress 0, with the
+/// learning rate of the first steps.
+#[test]
+fn a_training_begins_where_its_schedules_are_to_begin() {
+    let (assembly, told) = recorded("hwasp", &[("train.progress_start", "0.5")]);
+    run(&assembly, None, 1);
+    let mut half = std::mem::take(&mut *told.lock().unwrap());
+    half.dedup();
+    let expected: Vec<f64> = (0..8).map(|iteration| 0.5 + 0.5 * (f64::from(iteration) / 8.0)).collect();
+    assert_eq!(half, expected);
+
+    // At the end of every schedule nothing is left of the learning rate here, so that nothing is learned.
+    let end = &[("train.progress_start", "1.0"), ("ppo.learning_rate_final", "0.0")];
+    let (assembly, told) = recorded("hwasp", end);
+    let trained = run(&assembly, None, 1).0;
+    assert!(told.lock().unwrap().iter().all(|&progress| progress == 1.0));
+    assert_eq!(trained.params, assembly.init());
+    let (assembly, _) = recorded("hwasp", &[("ppo.learning_rate_final", "0.0")]);
+    assert_ne!(run(&assembly, None, 1).0.params, assembly.init());
+}

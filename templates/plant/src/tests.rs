@@ -40,7 +40,7 @@ fn the_law_has_the_right_derivatives() -> Result<(), Failed> {
         env.reset(&mut rng);
         let (mut command, mut state) = (Vec::new(), vec![0.0; world.env.state.len()]);
         let mut effort = vec![0.0; world.env.effort.len()];
-        for _ in 0..1 + rng.random_range(0..world.env.horizon.min(100)) {
+        for _ in 0..rng.random_range(1..=world.env.horizon.min(100)) {
             command =
                 world.env.command.iter().map(|port| port.lo + (port.hi - port.lo) * rng.random::<f64>()).collect();
             env.state(&mut state);

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use hwasp_algos::Archive;
+use hwasp_algos::{Archive, PpoKind};
 use hwasp_core::{Batch, End, Episode, Executor, RolloutError};
 use hwasp_experiment::Catalogue;
 use hwasp_testing::{Keeper, Settings, catalogue, executor, run, small, told};
@@ -165,14 +165,15 @@ fn what_a_worker_cannot_set_up_is_an_answer() {
     let text = ExperimentText::from("name = 1".to_owned());
     let file = wrong(EpisodesRequest { experiment: text, ..request.clone() });
     assert!(file.contains("the requested experiment"), "{file}");
-    let unknown = Worker::new(Catalogue::default()).answer(&Request::Results(request)).unwrap_err();
+    let empty = Catalogue::default().with_learner(PpoKind).unwrap();
+    let unknown = Worker::new(empty).answer(&Request::Results(request)).unwrap_err();
     assert!(unknown.to_string().contains("reach"), "{unknown}");
 }
 
 #[test]
 fn a_request_is_split_into_consecutive_parts() {
     let experiment = ExperimentText::from(String::new());
-    let split = |count, parts| {
+    let split = |count: u64, parts: usize| {
         let episodes = held_out(1, 10..10 + count);
         let request = EpisodesRequest {
             experiment: experiment.clone(),

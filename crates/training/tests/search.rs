@@ -117,7 +117,7 @@ fn failing_candidates_rank_last_and_are_charged() {
         ("cmaes", &[("cmaes.sigma", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("ars", &[("ars.noise_std", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("cmaes-rl", &[("cmaes.popsize", "5")], 1200),
-        ("ars-rl", &[("ars.directions", "4"), ("ars.noise_std", "0.4")], 1200),
+        ("ars-rl", &[("ars.directions", "4"), ("ars.noise_std", "0.4"), ("ars.step_size", "0.01")], 1200),
     ];
     for (method, settings, each) in settings {
         let mut assembly = assembly(method, settings).unwrap();

@@ -34,10 +34,11 @@ fn fixed_values_are_within_their_limits() {
 /// be chosen.
 #[test]
 fn what_is_built_may_lie_outside_of_the_limits() {
-    let built = |value| vec![Placement::Built(2.0), Placement::Built(3.0), Placement::Built(4.0), Placement::Built(value)];
+    let built =
+        |value| vec![Placement::Built(2.0), Placement::Built(3.0), Placement::Built(4.0), Placement::Built(value)];
     for value in [0.5, 9.5] {
         let policy = common::policy(built(value)).unwrap();
-        assert_eq!(policy.design(&[]), [2.0, 3.0, 4.0, value]);
+        assert_eq!(policy.design(&policy.init(0, 1.0)), [2.0, 3.0, 4.0, value]);
     }
     assert!(refused(built(f64::NAN)).starts_with("spring[1] fixed at NaN is outside"));
 }

@@ -79,8 +79,7 @@ impl PolicySpec {
             return Err(PlacementError::Noise { given: self.noise.command.len(), needed: env.command.len() });
         }
         let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
-        let free: Vec<usize> =
-            (0..space.len()).filter(|&i| self.placements[i].kept().is_none()).collect();
+        let free: Vec<usize> = (0..space.len()).filter(|&i| self.placements[i].kept().is_none()).collect();
         let mut composition = Composition { program: self.trace(env, &layout, &free), layout, free, noise: Vec::new() };
         composition.noise = self.component_noise(env, &composition.layout);
         Ok(composition)

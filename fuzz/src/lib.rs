@@ -6,10 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::{Archive, Array};
 use hwasp_core::Serial;
+use hwasp_experiment::{Catalogue, Layers, load, resolve};
 use hwasp_runs::checkpoint::{Header, decode, encode};
 use hwasp_runs::metrics::{MetricsTable, MetricsWriter};
 use hwasp_runs::{read_policy, write_policy};
-use hwasp_training::spec::{self, Layers};
 use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, params_at, train_from};
 
 /// The hash that stands for an experiment.
@@ -26,15 +26,17 @@ const KINDS: [(&str, &str); 7] = [
     ("ars-rl", "ars.directions=1 baseline.kind=linear train.env_steps=120"),
 ];
 
+static CATALOGUE: LazyLock<Catalogue> = LazyLock::new(hwasp_builtin::catalogue);
+
 /// Steps of an iteration: 2 episodes of 5 steps.
 const TINY: &str = "task.horizon=5 train.episodes_per_iteration=2 train.episode_steps=5 train.env_steps=400 \
                     train.evaluation_episodes=1 search.episodes=1 search.inner_env_steps=20 controller.hidden=[2] \
                     baseline.hidden=[2] ppo.epochs=1 ppo.minibatch_rows=0 baseline.epochs=1 baseline.minibatch_rows=0";
 
 fn tiny(method: &str, settings: &str) -> Assembly {
-    let layers = spec::load("reach").expect("the reach problem is built in");
+    let layers = load("reach", &CATALOGUE).expect("the reach problem is built in");
     let layers = TINY.split(' ').chain(settings.split_whitespace()).fold(layers, Layers::with_assignment);
-    Assembly::new(&spec::resolve(layers, Some(method)).expect("sound settings")).expect("a sound experiment")
+    Assembly::new(&resolve(layers, Some(method), &CATALOGUE).expect("sound settings")).expect("a sound experiment")
 }
 
 /// Keeps every checkpoint there can be.
@@ -65,14 +67,14 @@ static TRAININGS: LazyLock<Vec<(Assembly, Vec<Checkpoint>)>> = LazyLock::new(|| 
     KINDS.iter().map(train).collect()
 });
 
-/// An experiment file: faults, or a `Spec` whose own file gives it again.
+/// An experiment file: faults, or an `Experiment` whose own file gives it again.
 pub fn experiment(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let read = |text: &str| Layers::from_text("fuzz.toml", text).and_then(|layers| spec::resolve(layers, None));
+    let read = |text: &str| Layers::from_text("fuzz.toml", text).and_then(|layers| resolve(layers, None, &CATALOGUE));
     match read(text) {
-        Ok(spec) => {
-            let written = spec.to_toml().expect("a resolved experiment can be written");
-            assert_eq!(read(&written).expect("what was written resolves"), spec, "{written}");
+        Ok(experiment) => {
+            let written = experiment.to_toml().expect("a resolved experiment can be written");
+            assert_eq!(read(&written).expect("what was written resolves"), experiment, "{written}");
         }
         Err(faults) => assert!(!faults.to_string().is_empty()),
     }

@@ -1,5 +1,7 @@
-//! Learners: generalised advantages, value baselines, PPO, TRPO. Searches without gradients: CMA-ES, random search. They see
-//! policies, batches and scores, never an environment.
+//! Learners with gradients: generalised advantages, value baselines, PPO, TRPO. Searches without gradients: CMA-ES, augmented
+//! random search. They see policies, batches and scores, and never an environment.
+//!
+//! A [`LearnerKind`] gives a learner its name, its settings and their description, so that experiments can ask for it.
 
 #![forbid(unsafe_code)]
 

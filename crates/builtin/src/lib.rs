@@ -1,4 +1,4 @@
-//! The problems and learners that come with the program: a line for each.
+//! The problems and learners that come with the program, one line for each.
 
 #![forbid(unsafe_code)]
 

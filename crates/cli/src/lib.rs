@@ -1,9 +1,9 @@
-//! The program `hwasp`, to be called: a program of one's own is this one with further problems.
+//! The program `hwasp` as a function, [`run`]. Your own program calls it with more problems in the catalogue.
 //!
 //! ```no_run
 //! use std::process::ExitCode;
 //!
-//! // With `.with(Lamp)` for a problem of one's own: `hwasp init` writes one to begin with.
+//! // Your own problem joins by `.with(Lamp)`; `hwasp init` writes a project with one.
 //! fn main() -> ExitCode {
 //!     hwasp_cli::run(&hwasp_builtin::catalogue())
 //! }

@@ -1,6 +1,7 @@
-//! What a robot is made of here: a design space, a hardware law over it, a plant with a task (the environment), and a
-//! policy that composes a controller with the law. Random streams and rollouts are by name and by episode index, so that
-//! the number of threads changes nothing.
+//! What a robot is made of: a design space, a hardware law over it, a plant with a task (the environment), and a policy
+//! that joins a controller and the law.
+//!
+//! Random streams have names and episodes have indices, so the number of threads changes no bit.
 
 #![forbid(unsafe_code)]
 

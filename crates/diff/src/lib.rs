@@ -1,6 +1,6 @@
-//! The differentiation engine: a law written once over [`Scalar`] becomes a straight-line [`Program`] that runs over
-//! columns of a batch; dense layers run beside it. Both offer forward, vjp (reverse) and jvp (tangent), in `f32` and `f64`.
-//! This crate knows nothing of robots.
+//! The differentiation engine. A law that is written once over [`Scalar`] becomes a straight-line [`Program`], which runs
+//! over the columns of a batch. Dense layers run beside it. Both have forward, vjp (reverse) and jvp (tangent), in `f32` and
+//! `f64`. This crate knows nothing about robots.
 
 #![forbid(unsafe_code)]
 

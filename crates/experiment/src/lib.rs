@@ -1,8 +1,8 @@
-//! Experiment files: TOML becomes an [`Experiment`] in which nothing is left open, or a list of everything that is wrong.
+//! Experiment files. [`resolve`] makes of them an [`Experiment`] in which every setting has a value, or a list of all faults.
 //!
-//! What an experiment may name, problems and learners, is in a [`Catalogue`]: a value that the caller hands over. An
-//! experiment has layers, and the later ones win: the file; its `[methods.<method>]` tables, which hold the same tables as
-//! the file does; what the command line sets.
+//! An experiment names problems and learners. A [`Catalogue`] has those that can be named; it is a value that the caller
+//! hands over. An experiment has layers, and later ones win: the file; its `[methods.<method>]` tables, which hold the same
+//! tables as the file; and what the command line sets.
 
 #![forbid(unsafe_code)]
 

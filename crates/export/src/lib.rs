@@ -1,7 +1,7 @@
-//! From a run to a robot on the bench: what a run comes to, in files that other programs read.
+//! From a run to a robot on the bench: the result of a run in files that other programs read.
 //!
-//! A [`Kind`] is what can be asked for; it gives named files, and [`export()`] alone writes them. A new kind is a variant of
-//! [`Kind`], and a function from [`Source`] to files that [`export()`] calls for it.
+//! A [`Kind`] is what can be asked for. It gives named files, and [`export()`] alone writes them. A new kind needs a variant of
+//! [`Kind`], and a function from [`Source`] to files, which [`export()`] calls.
 
 #![forbid(unsafe_code)]
 

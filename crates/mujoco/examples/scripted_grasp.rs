@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             for native in [false, true] {
                 let mut line = format!("{:32}", format!("{name}, {limit} N{}", if native { ", tendons" } else { "" }));
                 let mut returns = 0.0;
-                for kind in ShapeKind::ALL {
+                for &(_, kind) in ShapeKind::ALL {
                     let mut settings = GraspSettings { shapes: vec![kind], ..GraspSettings::default() };
                     settings.hand.transmission.tension_limit = limit;
                     let grasp = if native { Grasp::native(settings, &design)? } else { Grasp::new(settings)? };

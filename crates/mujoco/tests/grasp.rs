@@ -279,7 +279,7 @@ fn noise_can_be_switched_off() {
 /// A good design with a strong motor grasps and lifts every shape, by the law and by the engine's own tendons.
 #[test]
 fn the_script_grasps_every_shape() {
-    for kind in ShapeKind::ALL {
+    for &(_, kind) in ShapeKind::ALL {
         let mut settings = settings(kind);
         settings.hand.transmission.tension_limit = 163.0;
         for grasp in [Grasp::new(settings.clone()).unwrap(), Grasp::native(settings, &SEARCHED).unwrap()] {
@@ -349,7 +349,9 @@ fn the_context_is_the_object() {
         let object = robot.plant().object();
         assert_eq!([told("mass"), told("friction")], [object.mass, object.friction]);
         assert_eq!(["inertia_x", "inertia_y", "inertia_z"].map(told), object.inertia);
-        assert_eq!(ShapeKind::ALL.map(|kind| told(kind.name())), ShapeKind::ALL.map(|k| f64::from(k == object.kind)));
+        for &(name, kind) in ShapeKind::ALL {
+            assert_eq!(told(name), f64::from(kind == object.kind), "{name}");
+        }
     }
 }
 

@@ -9,13 +9,13 @@ use std::sync::atomic::AtomicBool;
 use hwasp_core::Serial;
 use hwasp_plot::curves_svg;
 use hwasp_runs::{Keeping, Provenance, RunFolder};
-use hwasp_training::{Assembly, spec, train};
+use hwasp_training::{Assembly, train};
 
 #[test]
 fn a_finished_run_has_its_curves() {
     let settings = [("train.env_steps", "8000"), ("train.evaluation_episodes", "3")];
-    let layers = settings.iter().fold(spec::load("bar-length").unwrap(), |layers, (k, v)| layers.with_override(k, v));
-    let assembly = Assembly::new(&spec::resolve(layers, Some("hwasp")).unwrap()).unwrap();
+    let layers = settings.iter().fold(hwasp_testing::layers("bar-length"), |layers, (k, v)| layers.with_override(k, v));
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some("hwasp")).unwrap()).unwrap();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("run-with-curves");
     let _ = fs::remove_dir_all(&path);
     let provenance = Provenance::new(vec!["test".into()], 1, 0);

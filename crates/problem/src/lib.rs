@@ -1,8 +1,8 @@
 //! What a problem is.
 //!
-//! A [`Problem`] has a name, settings that experiment files may have in `[task]`, and a function from their values to what is
-//! trained and judged: [`Built`]. Those that come with the program and those that somebody brings along implement the same
-//! trait and enter by the same door, a catalogue of experiments.
+//! A [`Problem`] has a name, settings for the table `[task]` of experiment files, and a function from their values to
+//! [`Built`]: the worlds where one trains and where the result has to work. The problems that come with the program and your
+//! own implement the same trait and enter the same catalogue.
 //!
 //! ```
 //! use hwasp_core::Dimension;

@@ -1,9 +1,9 @@
-//! Reports: what a run or a comparison came to, as one HTML document that loads nothing.
+//! Reports: the result of a run or a comparison, as one HTML document that loads nothing.
 //!
-//! The document is for a telephone, a desk and paper; it has pictures as SVG with titles and descriptions, tables with captions,
-//! and one script, which plays the drawn grasps. The same folder gives the same bytes with the same program. Whatever a folder
-//! says is escaped, and a policy in the document lets nothing run or load but the style and the script that this program has put
-//! there, named by their hashes.
+//! The document is for a telephone, a desktop screen and paper. It has pictures as SVG with titles and descriptions, tables with
+//! captions, and one script, which plays the drawn grasps. The same folder gives the same bytes with the same program. All text
+//! of a folder is escaped. A content security policy in the document names the program's own style and script by their hashes,
+//! and forbids everything else.
 
 #![forbid(unsafe_code)]
 

@@ -75,10 +75,11 @@ mod grasps {
     use hwasp_core::Serial;
     use hwasp_report::play::{MOMENTS, PlayOptions, check, film, moments};
     use hwasp_runs::SavedRun;
-    use hwasp_training::{Assembly, evaluate, evaluate_native, spec};
+    use hwasp_training::{Assembly, evaluate, evaluate_native};
 
     fn trained() -> SavedRun {
-        SavedRun::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp")).unwrap()
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp");
+        SavedRun::open(&folder, hwasp_testing::catalogue()).unwrap()
     }
 
     fn options(first: u64, episodes: u64, native: bool) -> PlayOptions {
@@ -132,7 +133,7 @@ mod grasps {
 
     #[test]
     fn other_problems_have_nothing_to_look_at() {
-        let assembly = Assembly::new(&spec::resolve(spec::load("reach").unwrap(), None).unwrap()).unwrap();
+        let assembly = Assembly::new(&hwasp_testing::resolve(hwasp_testing::layers("reach"), None).unwrap()).unwrap();
         let error = check(&assembly).unwrap_err().to_string();
         assert_eq!(error, "reach has no grasps to look at; z-grasp and 3d-grasp have");
         assert_eq!(film(&assembly, &assembly.init(), &options(0, 1, false)).unwrap_err().to_string(), error);

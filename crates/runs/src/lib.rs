@@ -1,4 +1,5 @@
-//! Runs: folders with everything about one training, checkpoints that it goes on from, what is read back of them.
+//! Runs on disk. A run folder has everything about one training: its checkpoints, its learning curve, its result. This crate
+//! writes run folders and reads them back.
 
 #![forbid(unsafe_code)]
 

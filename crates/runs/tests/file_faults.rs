@@ -168,7 +168,7 @@ fn a_disk_that_is_full_for_a_while_costs_nothing() {
     attempt(&whole, &Faulty::new(0..0, false, io::ErrorKind::Other)).unwrap();
     // Two iterations long.
     attempt(&path, &Faulty::new(15..19, true, io::ErrorKind::StorageFull)).unwrap();
-    let rows = |path: &Path| SavedRun::open(path).unwrap().metrics().unwrap().rows;
+    let rows = |path: &Path| SavedRun::open(path, hwasp_testing::catalogue()).unwrap().metrics().unwrap().rows;
     let returns = |path| rows(path).iter().map(|row| row.discounted_return.to_bits()).collect::<Vec<_>>();
     assert_eq!(returns(&path), returns(&whole));
     assert_eq!(checkpoints(&path).len(), 3);

@@ -5,47 +5,71 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use hwasp_core::{Dimension, Initial, Serial};
-use hwasp_experiment::{self, Experiment, Layers, OwnProblem, Setting};
+use hwasp_experiment::{Catalogue, Experiment, Layers};
+use hwasp_problem::{AnyError, Built, Problem};
 use hwasp_runs::{Keeping, Provenance, RunFolder, SavedRun, no_extras};
+use hwasp_settings::{Fields, Settings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
-use hwasp_training::{Assembly, Problems, train};
+use hwasp_training::{Assembly, train};
 
 const EXPERIMENT: &str = "name = \"mine\"\n[task]\nproblem = \"my-reach\"\ngoal = \"30 cm\"\n[train]\nenv_steps = 2400\n\
     episode_steps = 30\nevaluation_episodes = 20\n";
 
-/// What is registered holds for the whole process, in which these tests run beside each other.
-fn alone() -> MutexGuard<'static, ()> {
-    static ALONE: Mutex<()> = Mutex::new(());
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn goal() -> Setting {
-    Setting { name: "goal", dimension: Dimension::Length, default: 0.25, limits: -1.0..=1.0 }
-}
-
 /// The reach problem as a stranger would bring it along, with a gear that begins at 0.7.
-fn mine(name: &'static str, settings: [Setting; 1]) -> OwnProblem {
-    OwnProblem::new(name, settings, |[goal]| {
+struct Mine {
+    name: &'static str,
+    key: &'static str,
+    goal: f64,
+    optimum: usize,
+}
+
+const MINE: Mine = Mine { name: "my-reach", key: "goal", goal: 0.25, optimum: 1 };
+
+#[derive(Clone, Debug, PartialEq)]
+struct Goal {
+    key: &'static str,
+    goal: f64,
+}
+
+impl Settings for Goal {
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        fields.quantity(self.key, &mut self.goal, Dimension::Length, -1.0..=1.0, "where the point has to be");
+    }
+}
+
+impl Problem for Mine {
+    type Settings = Goal;
+
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn defaults(&self) -> Goal {
+        Goal { key: self.key, goal: self.goal }
+    }
+
+    fn build(&self, &Goal { goal, .. }: &Goal) -> Result<Built, AnyError> {
         if goal > 0.9 {
             return Err("the rail ends at 0.9 m".into());
         }
         let reach = Reach::new(ReachSettings { goal, initial: Initial::Value(0.7), ..ReachSettings::default() })?;
-        Ok(Problems { optimum: vec![Some(reach.optimum())], ..Problems::new(reach.law(), reach) })
-    })
+        Ok(Built { optimum: vec![Some(reach.optimum()); self.optimum], ..Built::new(reach.law(), reach) })
+    }
+}
+
+fn catalogue() -> Catalogue {
+    hwasp_testing::catalogue().clone().with(MINE).unwrap()
 }
 
 fn resolve(text: &str) -> Result<Experiment, String> {
     let layers = Layers::from_text("experiment.toml", text).map_err(|e| e.to_string())?;
-    spec::resolve(layers, None).map_err(|e| e.to_string())
+    hwasp_experiment::resolve(layers, None, &catalogue()).map_err(|e| e.to_string())
 }
 
 #[test]
 fn settings_horizon_and_start_are_the_experiments() {
-    let _alone = alone();
-    spec::register([mine("my-reach", [goal()])]).unwrap();
     let usual = resolve(EXPERIMENT).unwrap();
     assert_eq!((usual.task.name(), usual.task.horizon), ("my-reach", 30));
     let design = |spec: &Experiment| {
@@ -55,7 +79,7 @@ fn settings_horizon_and_start_are_the_experiments() {
     assert!((design(&usual) - 0.7).abs() < 1e-6, "where the law begins: {}", design(&usual));
     let set = resolve(&EXPERIMENT.replace("[train]", "horizon = 40\n[design]\ninitial = \"1.5\"\n[train]")).unwrap();
     assert!((design(&set) - 1.5).abs() < 1e-6);
-    assert_eq!(Assembly::new(&set).unwrap().problem.deployment.make.make(None).spec().horizon, 40);
+    assert_eq!(Assembly::new(&set).unwrap().worlds.deployment.make.make(None).spec().horizon, 40);
 
     // What a run folder keeps is the same experiment, the goal with its unit.
     let written = usual.to_toml().unwrap();
@@ -67,8 +91,6 @@ fn settings_horizon_and_start_are_the_experiments() {
 
 #[test]
 fn it_trains_to_the_bits_of_the_same_problem_from_here() {
-    let _alone = alone();
-    spec::register([mine("my-reach", [goal()])]).unwrap();
     let design = "[design]\ninitial = \"0.7\"\n[noise]\neffort = \"0.1 m/s\"\n[train]";
     let text = EXPERIMENT.replace("[train]", design);
     let trained = |text: &str| {
@@ -80,8 +102,6 @@ fn it_trains_to_the_bits_of_the_same_problem_from_here() {
 
 #[test]
 fn its_run_folder_is_read_back() {
-    let _alone = alone();
-    spec::register([mine("my-reach", [goal()])]).unwrap();
     let path: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own-problem");
     let _ = fs::remove_dir_all(&path);
     let spec = resolve(EXPERIMENT).unwrap();
@@ -91,18 +111,15 @@ fn its_run_folder_is_read_back() {
     let trained = train(&assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
     let summary = folder.finish(&assembly, &trained, &no_extras).unwrap();
     assert_eq!((summary.task.as_str(), summary.design["gear"].optimum), ("my-reach", Some(1.0)));
-    assert_eq!(SavedRun::open(&path).unwrap().params().unwrap(), trained.params);
+    assert_eq!(SavedRun::open(&path, &catalogue()).unwrap().params().unwrap(), trained.params);
 
     // A program without the problem says which it knows.
-    spec::register([]).unwrap();
-    let error = SavedRun::open(&path).err().unwrap().to_string();
+    let error = SavedRun::open(&path, hwasp_testing::catalogue()).err().unwrap().to_string();
     assert!(error.contains("task.problem = \"my-reach\" is none of `stiffness`"), "{error}");
 }
 
 #[test]
 fn wrong_settings_are_faults_of_the_file() {
-    let _alone = alone();
-    spec::register([mine("my-reach", [goal()])]).unwrap();
     for (from, to, told) in [
         ("30 cm", "3 m", "task.goal = \"3 m\" is outside [-1 m, 1 m]"),
         ("30 cm", "30 N", "task.goal = \"30 N\" has a unit that measures something else"),
@@ -118,24 +135,13 @@ fn wrong_settings_are_faults_of_the_file() {
 
 #[test]
 fn problems_that_cannot_be_are_refused() {
-    let _alone = alone();
-    spec::register([mine("my-reach", [goal()])]).unwrap();
-    let told = |problem: OwnProblem| spec::register([problem]).unwrap_err().to_string();
-    assert!(told(mine("reach", [goal()])).contains("a problem that comes with hwasp has this name"));
-    assert!(told(mine("My reach", [goal()])).contains("the name has other characters"));
-    let horizon = Setting { name: "horizon", ..goal() };
-    assert!(told(mine("a", [horizon])).contains("the setting `horizon` has the name of a key that every problem has"));
-    let beyond = Setting { default: 2.0, ..goal() };
-    assert!(told(mine("a", [beyond])).contains("is 2 m by default, which is not inside [-1 m, 1 m]"));
-    let unbuilt = Setting { default: 0.95, ..goal() };
-    assert_eq!(told(mine("a", [unbuilt])), "problem `a`: the rail ends at 0.9 m");
-    let optimum = OwnProblem::new("a", [], |[]| {
-        let reach = Reach::new(ReachSettings::default())?;
-        Ok(Problems { optimum: Vec::new(), ..Problems::new(reach.law(), reach) })
-    });
-    assert!(told(optimum).contains("the optimum of 0 design groups is given, but there are 1"));
-    let twice = spec::register([mine("a", [goal()]), mine("a", [goal()])]).unwrap_err().to_string();
-    assert!(twice.contains("two problems have this name"), "{twice}");
-    // What was there before is there still.
-    assert_eq!(spec::registered().iter().map(|own| own.name()).collect::<Vec<_>>(), ["my-reach"]);
+    let told = |mine: Mine| catalogue().with(mine).map(|_| ()).unwrap_err().to_string();
+    assert!(told(Mine { name: "reach", ..MINE }).contains("problem `reach`: the name is taken"));
+    assert!(told(MINE).contains("problem `my-reach`: the name is taken"));
+    assert!(told(Mine { name: "My reach", ..MINE }).contains("the name has other characters"));
+    let horizon = told(Mine { name: "a", key: "horizon", ..MINE });
+    assert!(horizon.contains("the setting `horizon` has the name of a key that every problem has"), "{horizon}");
+    assert_eq!(told(Mine { name: "a", goal: 0.95, ..MINE }), "problem `a`: the rail ends at 0.9 m");
+    let optimum = told(Mine { name: "a", optimum: 0, ..MINE });
+    assert!(optimum.contains("the optimum of 0 design groups is given, but there are 1"), "{optimum}");
 }

@@ -13,7 +13,7 @@ fn trained_hands_grasp() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results");
     let mut seen = 0;
     for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap).filter(|entry| entry.path().is_dir()) {
-        let saved = SavedRun::open(&entry.path()).unwrap();
+        let saved = SavedRun::open(&entry.path(), hwasp_testing::catalogue()).unwrap();
         let params = saved.params().unwrap();
         let summary = saved.summary().unwrap();
         let executor = Threads::new(2).unwrap();

@@ -12,7 +12,7 @@ use hwasp_core::{End, EpisodeKind, Episodes, Sampler, Serial, Step};
 use hwasp_experiment::Experiment;
 use hwasp_runs::checkpoint::{decode, encode};
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, SavedRun, no_extras, replay};
-use hwasp_testing::{KINDS, Keeper, Stopper, executor, run, small, spoil, told};
+use hwasp_testing::{KINDS, Keeper, Stopper, catalogue, executor, run, small, spoil, told};
 use hwasp_training::{Assembly, Event, Fault, Observer, TrainError, params_at, train, train_from};
 
 fn empty(name: &str) -> PathBuf {
@@ -150,12 +150,12 @@ fn an_unfinished_run_can_be_evaluated_at_its_newest_checkpoint() {
         let stop = AtomicBool::new(false);
         let mut stopper = Stopper { inner: &mut folder, stop: &stop, after: 3 };
         train(&assembly, &Serial, &mut stopper, &stop).unwrap_err();
-        let params = SavedRun::open(&path).unwrap().params().unwrap();
+        let params = SavedRun::open(&path, catalogue()).unwrap().params().unwrap();
         assert_eq!(params.len(), assembly.init().len());
         let moved = params != assembly.init();
         // Whether the first candidate was scored by then is another matter.
         assert!(moved || assembly.experiment().method.searches(), "{method}");
-        assert!(matches!(SavedRun::open(&path).unwrap().summary(), Err(RunError::Unfinished { .. })));
+        assert!(matches!(SavedRun::open(&path, catalogue()).unwrap().summary(), Err(RunError::Unfinished { .. })));
     }
 }
 
@@ -176,7 +176,7 @@ fn a_damaged_newest_checkpoint_costs_the_steps_since_the_one_before() {
     assert_eq!(told(&trained), told(&run(&assembly, None, 1).0));
     assert!(path.join("checkpoints/iteration-00000002.damaged").is_file());
     assert!(path.join("metrics.damaged").is_file());
-    assert_eq!(SavedRun::open(&path).unwrap().metrics().unwrap().rows[0].iteration, 1);
+    assert_eq!(SavedRun::open(&path, catalogue()).unwrap().metrics().unwrap().rows[0].iteration, 1);
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn a_run_without_checkpoints_begins_from_the_beginning() {
     assert!(found.checkpoint.is_none() && found.damaged.is_empty());
     let trained = train_from(None, &assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
     folder.finish(&assembly, &trained, &no_extras).unwrap();
-    assert_eq!(SavedRun::open(&path).unwrap().metrics().unwrap().rows.len(), 8);
+    assert_eq!(SavedRun::open(&path, catalogue()).unwrap().metrics().unwrap().rows.len(), 8);
 }
 
 #[test]
@@ -244,16 +244,16 @@ fn an_iteration_that_failed_can_be_repeated_from_its_folder() {
     let file = folder.fault().unwrap().to_owned();
     assert_eq!(file, path.join("faults/iteration-00000003.safetensors"));
     for threads in [1, 2] {
-        let replayed = replay(&file, &*executor(threads)).unwrap();
+        let replayed = replay(&file, catalogue(), &*executor(threads)).unwrap();
         assert_eq!((replayed.iteration, replayed.env_steps, replayed.same_batch), (3, 3600, Some(true)));
         assert_eq!(replayed.fault.as_deref(), Some("the policy gradient is not finite"));
         // What was told is not what happens: this iteration is sound, and gives the row of the whole training.
         assert_eq!(replayed.outcome.unwrap().get("kl"), Some(kept.rows[3].kl));
     }
     // The state before it is a checkpoint as well, without a batch.
-    let replayed = replay(&path.join("checkpoints/iteration-00000003.safetensors"), &Serial).unwrap();
+    let replayed = replay(&path.join("checkpoints/iteration-00000003.safetensors"), catalogue(), &Serial).unwrap();
     assert_eq!((replayed.same_batch, replayed.fault), (None, None));
-    let nowhere = replay(&path.join("experiment.toml"), &Serial).unwrap_err().to_string();
+    let nowhere = replay(&path.join("experiment.toml"), catalogue(), &Serial).unwrap_err().to_string();
     assert!(nowhere.contains("is no checkpoint of a run folder"), "{nowhere}");
 }
 
@@ -275,7 +275,7 @@ fn an_iteration_that_fails_leaves_the_state_before_it() {
     assert!(error.to_string().contains("of iteration 2 (seed 0) failed at step"), "{error}");
     let fault = folder.fault().unwrap().to_owned();
     drop(folder);
-    let replayed = replay(&fault, &Serial).unwrap();
+    let replayed = replay(&fault, catalogue(), &Serial).unwrap();
     assert_eq!((replayed.iteration, replayed.env_steps), (2, 2400));
     assert_eq!(replayed.fault, Some(error.to_string()));
     // In the plant that is not spoiled the training goes on from there.

@@ -16,9 +16,9 @@ use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, evalu
 const SETTINGS: &[(&str, &str)] = &[("train.env_steps", "2400"), ("train.evaluation_episodes", "20")];
 
 fn experiment(name: &str, method: Option<&str>, settings: &[(&str, &str)]) -> Experiment {
-    let layers = spec::load(name).unwrap();
+    let layers = hwasp_testing::layers(name);
     let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
-    spec::resolve(layers, method).unwrap()
+    hwasp_testing::resolve(layers, method).unwrap()
 }
 
 fn empty(name: &str) -> PathBuf {
@@ -94,7 +94,7 @@ fn every_file_is_there_and_well_formed() {
     let design: toml::Table = fs::read_to_string(path.join("design.toml")).unwrap().parse().unwrap();
     let length = design["length"].as_table().unwrap();
     assert_eq!(length["unit"].as_str(), Some("m"));
-    let saved = SavedRun::open(&path).unwrap();
+    let saved = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap();
     let values = saved.assembly().policy.design(&saved.params().unwrap());
     let written: Vec<f64> = length["values"].as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
     assert_eq!(written, values);
@@ -140,7 +140,9 @@ fn the_experiment_in_the_folder_repeats_the_run_bit_by_bit() {
         let experiment = if name == "paper" { one_iteration(experiment) } else { experiment };
         let (first, second) = (empty(&format!("first-{name}")), empty(&format!("second-{name}")));
         let summary = run(&first, &experiment);
-        let again = spec::resolve(spec::load(first.join("experiment.toml").to_str().unwrap()).unwrap(), None).unwrap();
+        let again =
+            hwasp_testing::resolve(hwasp_testing::layers(first.join("experiment.toml").to_str().unwrap()), None)
+                .unwrap();
         assert_eq!(again, experiment, "{name}");
         let repeated = run(&second, &again);
         assert_eq!(summary.evaluation, repeated.evaluation, "{name}");
@@ -174,7 +176,7 @@ fn a_saved_run_evaluates_to_what_its_summary_says() {
         let path = empty(&format!("evaluated-{name}"));
         let spec = experiment(name, Some(method), &[("train.env_steps", "4000"), ("train.evaluation_episodes", "20")]);
         let summary = run(&path, &spec);
-        let saved = SavedRun::open(&path).unwrap();
+        let saved = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap();
         let settings = &saved.assembly().experiment().train;
         let asked = (settings.evaluation_episodes as u64, settings.evaluation_seed);
         let evaluation = evaluate(saved.assembly(), &saved.params().unwrap(), asked, &Serial).unwrap();
@@ -232,7 +234,7 @@ fn a_folder_that_vanishes_is_made_again() {
     // The rows before that are gone, and nothing else.
     assert_eq!(rows(&path).iter().map(|row| row.iteration).collect::<Vec<_>>(), [1]);
     assert_eq!(files(&path), ALL[1..].iter().map(|&file| file.to_owned()).collect());
-    assert!(SavedRun::open(&path).unwrap().params().is_ok());
+    assert!(SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().params().is_ok());
 }
 
 /// Someone removes the folder after the first iteration.
@@ -255,7 +257,10 @@ fn a_run_that_has_not_finished_says_so() {
     let path = empty("begun");
     let spec = experiment("reach", None, SETTINGS);
     RunFolder::create(&path, &spec, &provenance(&spec), Keeping::default()).unwrap();
-    let saved = SavedRun::open(&path).unwrap();
+    let saved = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap();
     assert!(matches!(saved.params(), Err(RunError::Unfinished { file: "policy.safetensors", .. })));
-    assert!(matches!(SavedRun::open(&path.join("..")), Err(RunError::NotARun { file: "experiment.toml", .. })));
+    assert!(matches!(
+        SavedRun::open(&path.join(".."), hwasp_testing::catalogue()),
+        Err(RunError::NotARun { file: "experiment.toml", .. })
+    ));
 }

@@ -4,15 +4,15 @@
 
 use hwasp_core::Policy;
 use hwasp_runs::{PolicyFileError, read_policy, write_policy};
-use hwasp_training::{Assembly, spec};
+use hwasp_training::Assembly;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use safetensors::SafeTensors;
 
 fn assembly(method: &str, settings: &[(&str, &str)]) -> Assembly {
-    let layers = spec::load("mass-spring").unwrap();
+    let layers = hwasp_testing::layers("mass-spring");
     let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
-    Assembly::new(&spec::resolve(layers, Some(method)).unwrap()).unwrap()
+    Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap()
 }
 
 /// A policy of few parameters.

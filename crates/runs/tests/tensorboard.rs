@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Serial;
 use hwasp_runs::TensorBoard;
-use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, spec, train};
+use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, train};
 
 fn empty(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tensorboard").join(name);
@@ -100,11 +100,10 @@ impl Observer for Rows {
 
 #[test]
 fn a_training_can_be_read_back() {
-    let layers = spec::load("reach")
-        .unwrap()
+    let layers = hwasp_testing::layers("reach")
         .with_override("train.env_steps", "2400")
         .with_override("train.evaluation_episodes", "5");
-    let assembly = Assembly::new(&spec::resolve(layers, None).unwrap()).unwrap();
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, None).unwrap()).unwrap();
     let (mut board, mut rows) = (TensorBoard::create(&empty("training").join("deep")).unwrap(), Rows::default());
     let mut observers: Vec<&mut dyn Observer> = vec![&mut board, &mut rows];
     let trained = train(&assembly, &Serial, &mut observers, &AtomicBool::new(false)).unwrap();

@@ -1,12 +1,12 @@
 //! Settings described once.
 //!
-//! A struct of settings goes over its fields once, by key, with limits and meaning ([`Settings::fields`]). That one text
-//! reads them from a file and checks them, writes them into a resolved file, makes the rows of the reference
-//! ([`Field::row`]) and the JSON Schema ([`object_schema`]). What a field holds before it is read is its default.
+//! A struct of settings lists its fields in one method, with key, limits and meaning ([`Settings::fields`]). That one text
+//! does four things: it reads a file and checks it, writes a resolved file, makes the rows of the reference ([`Field::row`]),
+//! and makes the JSON Schema ([`object_schema`]). The value of a field before it is read is its default.
 //!
-//! Files come in layers ([`Layers`]), and the later ones win. A place in one of them goes with every value, so that each
-//! [`Fault`] can show its line; all of them are told at once. Files are taken for hostile: their size, their counts and
-//! their numbers have limits.
+//! Files come in layers ([`Layers`]), and later ones win. Every value keeps its place in a file, so that each [`Fault`] can
+//! show its line. All faults are reported at once. Files may be hostile, so their size, their counts and their numbers have
+//! limits.
 //!
 //! ```
 //! use hwasp_core::Dimension;

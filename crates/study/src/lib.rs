@@ -1,7 +1,7 @@
-//! Comparisons: a grid of methods and seeds under one budget, run in parallel, and what it says.
+//! Comparisons: a grid of methods and seeds under one budget, run in parallel, and its statistics.
 //!
-//! A comparison is a folder. Each cell of the grid is a run folder in it, under `cells/`: a finished one is not run again,
-//! an unfinished one is resumed, and one of another experiment is refused.
+//! A comparison is a folder. Each cell of the grid is a run folder under `cells/`. A finished cell stays as it is, an unfinished
+//! one is resumed, and one of another experiment is refused.
 
 #![forbid(unsafe_code)]
 

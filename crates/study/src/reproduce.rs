@@ -180,10 +180,15 @@ mod tests {
 
     #[test]
     fn every_figure_can_be_put_together() {
+        let catalogue = hwasp_testing::catalogue();
         for figure in FIGURES {
             for experiment in figure.experiments {
                 for quick in [false, true] {
-                    let cells = figure.grid(experiment, quick).unwrap().cells(std::path::Path::new("nowhere")).unwrap();
+                    let cells = figure
+                        .grid(experiment, quick, catalogue)
+                        .unwrap()
+                        .cells(std::path::Path::new("nowhere"), catalogue)
+                        .unwrap();
                     assert_eq!(cells.len(), figure.methods.len() * if quick { 2 } else { 5 });
                 }
             }

@@ -9,11 +9,11 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
 use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid, Watch};
-use hwasp_training::{Event, TrainError, spec};
+use hwasp_training::{Event, TrainError};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
     let settings = [("train.evaluation_episodes", "20"), ("train.env_steps", "12000"), ("ppo.clip_ratio", clip)];
-    let layers = settings.iter().fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
+    let layers = settings.iter().fold(hwasp_testing::layers("reach"), |layers, (k, v)| layers.with_override(k, v));
     Grid { layers, contenders: methods.iter().map(|m| Contender::parse(m).unwrap()).collect(), seeds: 0..3 }
 }
 
@@ -51,7 +51,13 @@ impl Watch for Counter {
 }
 
 fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, CompareError> {
-    study::run(&grid.cells(folder)?, &Threads::new(2).unwrap(), &["hwasp".into()], watch, &watch.stop)
+    study::run(
+        &grid.cells(folder, hwasp_testing::catalogue())?,
+        &Threads::new(2).unwrap(),
+        &["hwasp".into()],
+        watch,
+        &watch.stop,
+    )
 }
 
 /// The figures without times.
@@ -79,7 +85,12 @@ fn a_killed_comparison_goes_on_and_ends_with_the_same_figures() {
     cells.sort();
     let done = cells.iter().find(|cell| cell.join("summary.json").exists()).unwrap();
     fs::remove_file(done.join("summary.json")).unwrap();
-    let never = grid.cells(&folder).unwrap().into_iter().map(|cell| cell.path).find(|path| !path.exists());
+    let never = grid
+        .cells(&folder, hwasp_testing::catalogue())
+        .unwrap()
+        .into_iter()
+        .map(|cell| cell.path)
+        .find(|path| !path.exists());
     let never = never.unwrap();
     fs::create_dir(&never).unwrap();
     fs::write(never.join(".experiment.toml.partial"), "name = ").unwrap();
@@ -112,7 +123,7 @@ fn what_a_comparison_writes() {
     let grid = grid(&["hwasp", "fixed:0.3"], "0.2");
     let cells = run(&grid, &folder, &Counter::default()).unwrap();
     let comparison = Comparison::new("reach", &cells, Some(-1e9)).unwrap();
-    let options = grid.cells(&folder).unwrap()[0].plot_options();
+    let options = grid.cells(&folder, hwasp_testing::catalogue()).unwrap()[0].plot_options();
     comparison.write(&folder, &cells, &options).unwrap();
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     assert_eq!(read("table.md"), comparison.markdown());
@@ -135,5 +146,5 @@ fn contenders_that_are_none() {
         assert!(error.starts_with(told), "{error}");
     }
     let twice = grid(&["hwasp", "hwasp"], "0.2");
-    assert!(matches!(twice.cells(Path::new("nowhere")), Err(CompareError::Twice(_))));
+    assert!(matches!(twice.cells(Path::new("nowhere"), hwasp_testing::catalogue()), Err(CompareError::Twice(_))));
 }

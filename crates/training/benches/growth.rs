@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use hwasp_algos::{Cmaes, CmaesConfig, Search};
 use hwasp_core::Threads;
-use hwasp_training::{Assembly, spec, train};
+use hwasp_training::{Assembly, train};
 
 /// What is made larger.
 struct Axis {
@@ -98,8 +98,9 @@ fn iteration(count: u64, rows: u64, threads: usize, settings: &[(&str, &str)]) -
     let steps = (count * rows).to_string();
     let settings =
         [("train.env_steps", &*steps), ("train.evaluation_episodes", "1")].into_iter().chain(settings.to_vec());
-    let layers = settings.fold(spec::load("mass-spring")?, |layers, (key, value)| layers.with_override(key, value));
-    let assembly = Assembly::new(&spec::resolve(layers, None)?)?;
+    let layers =
+        settings.fold(hwasp_testing::layers("mass-spring"), |layers, (key, value)| layers.with_override(key, value));
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, None)?)?;
     let trained = train(&assembly, &Threads::new(threads)?, &mut (), &AtomicBool::new(false))?;
     Ok(trained.wall_s / trained.iterations as f64)
 }

@@ -1,7 +1,7 @@
 //! Trainings: the assembly of an experiment, the loops that learn and search, evaluation and statistics.
 //!
-//! A program that embeds training needs three calls: [`resolve`](hwasp_experiment::resolve) an experiment,
-//! [`Assembly::new`], [`train`]. What happens on the way is told to an [`Observer`].
+//! A program that embeds training makes three calls: [`resolve`](hwasp_experiment::resolve) for the experiment,
+//! [`Assembly::new`], [`train`]. An [`Observer`] is told what happens on the way.
 
 #![forbid(unsafe_code)]
 

@@ -5,7 +5,7 @@
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Serial, Threads};
-use hwasp_training::{Assembly, Trained, evaluate, evaluate_native, spec, train};
+use hwasp_training::{Assembly, Trained, evaluate, evaluate_native, train};
 
 /// A small training: 60 steps an episode, of one shape.
 fn assembly(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Assembly {
@@ -22,9 +22,9 @@ fn assembly(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Assemb
         ("train.evaluation_episodes", "8"),
         ("baseline.minibatch_rows", "60"),
     ];
-    let layers = spec::load(experiment).unwrap();
+    let layers = hwasp_testing::layers(experiment);
     let layers = small.iter().chain(settings).fold(layers, |layers, (key, value)| layers.with_override(key, value));
-    Assembly::new(&spec::resolve(layers, Some(method)).unwrap()).unwrap()
+    Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap()
 }
 
 fn run(assembly: &Assembly, threads: usize) -> Trained {

@@ -7,16 +7,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hwasp_core::{Serial, Step, Threads};
 use hwasp_testing::spoil;
-use hwasp_training::{
-    AssembleError, Assembly, Event, MetricsRow, Observer, ObserverError, Trained, evaluate, spec, train,
-};
+use hwasp_training::{AssembleError, Assembly, Event, MetricsRow, Observer, ObserverError, Trained, evaluate, train};
 
 /// Small searches on the reach problem: 30 steps an episode.
 fn assembly(method: &str, settings: &[(&str, &str)]) -> Result<Assembly, AssembleError> {
     let small = [("train.evaluation_episodes", "20"), ("train.env_steps", "60000"), ("search.inner_env_steps", "1200")];
     let layers =
-        small.iter().chain(settings).fold(spec::load("reach").unwrap(), |layers, (k, v)| layers.with_override(k, v));
-    Assembly::new(&spec::resolve(layers, Some(method)).unwrap())
+        small.iter().chain(settings).fold(hwasp_testing::layers("reach"), |layers, (k, v)| layers.with_override(k, v));
+    Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap())
 }
 
 #[derive(Default)]
@@ -65,7 +63,7 @@ fn the_ledger_counts_every_step() {
         assert_eq!(rows.len() as u64, trained.iterations);
         (trained.iterations, trained.env_steps)
     };
-    let steps = spec::resolve(spec::load("reach").unwrap(), None).unwrap().train.episode_steps as u64;
+    let steps = hwasp_testing::resolve(hwasp_testing::layers("reach"), None).unwrap().train.episode_steps as u64;
     let (generations, charged) = count("cmaes", &[("cmaes.popsize", "6"), ("search.episodes", "3")]);
     assert_eq!(charged, generations * 6 * 3 * steps + 2 * 16 * steps);
     let (generations, charged) = count("ars", &[("ars.directions", "5"), ("search.episodes", "2")]);

@@ -5,18 +5,18 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Placement, Serial, Threads};
-use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, TrainError, Trained, spec, train};
+use hwasp_training::{Assembly, Event, MetricsRow, Observer, ObserverError, TrainError, Trained, train};
 
 /// An experiment with settings on top; `reach` is cut to two iterations.
 fn assembly(experiment: &str, method: Option<&str>, settings: &[(&str, &str)]) -> Assembly {
-    let mut layers = spec::load(experiment).unwrap().with_override("train.evaluation_episodes", "20");
+    let mut layers = hwasp_testing::layers(experiment).with_override("train.evaluation_episodes", "20");
     if experiment == "reach" {
         layers = layers.with_override("train.env_steps", "2400");
     }
     for (key, value) in settings {
         layers = layers.with_override(key, value);
     }
-    Assembly::new(&spec::resolve(layers, method).unwrap()).unwrap()
+    Assembly::new(&hwasp_testing::resolve(layers, method).unwrap()).unwrap()
 }
 
 fn finish(assembly: &Assembly, observer: &mut dyn Observer) -> Trained {

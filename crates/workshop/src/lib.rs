@@ -1,4 +1,5 @@
-//! The workshop: what statics say of a design, the parts of a hand, and which of them has to be precise.
+//! The workshop, where a design becomes parts: what statics say about it, which parts come nearest, and which of them have to
+//! be precise.
 
 #![forbid(unsafe_code)]
 

@@ -39,7 +39,7 @@ fn a_hand_that_droops_is_told() {
 #[test]
 fn trained_hands_are_read_without_the_engine() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp");
-    let report = DesignReport::open(&folder).unwrap();
+    let report = DesignReport::open(&folder, hwasp_testing::catalogue()).unwrap();
     assert_eq!((report.groups.len(), report.groups[11].name.as_str()), (12, "finger_distal_preload"));
     assert!(report.groups.iter().all(|group| (0.0..=1.0).contains(&group.position[0])));
     let svg = report.hand.unwrap().closing_plot("").svg;

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Executor, Serial};
-use hwasp_experiment::{Experiment, Place, Problem};
+use hwasp_experiment::{Experiment, Place};
 use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
-use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, spec, train, train_from};
+use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, train, train_from};
 use hwasp_workshop::parts::{
     Bench, PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, snap,
 };
@@ -40,8 +40,8 @@ fn run() -> (Assembly, Vec<f32>) {
         ("baseline.minibatch_rows", "60"),
     ];
     let layers =
-        small.iter().fold(spec::load("z-grasp").unwrap(), |layers, (key, value)| layers.with_override(key, value));
-    let assembly = Assembly::new(&spec::resolve(layers, Some("hwasp")).unwrap()).unwrap();
+        small.iter().fold(hwasp_testing::layers("z-grasp"), |layers, (key, value)| layers.with_override(key, value));
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some("hwasp")).unwrap()).unwrap();
     let trained = train(&assembly, &Serial, &mut (), &AtomicBool::new(false)).unwrap();
     (assembly, trained.params)
 }
@@ -105,15 +105,14 @@ fn a_controller_is_trained_further_on_parts() {
     let tuning = Tuning::new(&assembly, &params, &snapped.built, 960, ASKED).unwrap();
     let (spec, path) = (tuning.assembly.experiment(), empty("parts-tuned"));
     assert_eq!((spec.design.placement, spec.train.env_steps), (Place::Fixed, 960));
-    let Problem::ZGrasp(task) = &spec.task.problem else { panic!("{:?}", spec.task) };
-    assert_eq!((task.safety_growth, spec.noise.command_final.clone()), ([0.0; 2], None));
+    assert_eq!((spec.train.progress_start, spec.noise.command_final.clone()), (1.0, None));
 
     let TuningFolder::Open(mut folder, from) = tuning.folder(&path, provenance(spec)).unwrap() else { panic!() };
     // It begins with the run's controller on the built hand, and so it is from the first moment on: that is in the folder.
     let start = params_at(&tuning.assembly, &from).unwrap();
     assert_eq!(tuning.assembly.policy.controller_params(&start), assembly.policy.controller_params(&params));
     assert_eq!(tuning.assembly.policy.design(&start), snapped.built);
-    assert_eq!(SavedRun::open(&path).unwrap().params().unwrap(), start);
+    assert_eq!(SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().params().unwrap(), start);
     let judge = snapped.judge(&assembly, &params, ASKED, &Serial).unwrap();
     assert_eq!(judge.worth().snapped, evaluate(&tuning.assembly, &start, ASKED, &Serial).unwrap());
 
@@ -127,7 +126,7 @@ fn a_controller_is_trained_further_on_parts() {
     assert_eq!(trained.env_steps, 960);
     folder.finish(&tuning.assembly, &trained, &no_extras).unwrap();
     drop(folder);
-    let saved = SavedRun::open(&path).unwrap();
+    let saved = SavedRun::open(&path, hwasp_testing::catalogue()).unwrap();
     assert_eq!(saved.assembly().experiment(), spec);
     let worth = judge.tuned(&trained.params, "tuned", 960).unwrap().tuned.unwrap();
     assert_eq!(worth.evaluation, trained.evaluation);

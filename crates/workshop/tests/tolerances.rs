@@ -5,15 +5,15 @@
 use hwasp_core::{Executor, Serial};
 use hwasp_plot::render_png;
 use hwasp_testing::{empty, executor};
-use hwasp_training::{Assembly, evaluate_in, spec};
+use hwasp_training::{Assembly, evaluate_in};
 use hwasp_workshop::tolerances::{ManufacturingError, Sensitivities, errors_of, tolerances};
 
 const ASKED: (u64, u64) = (12, 4);
 
 fn springs() -> (Assembly, Vec<f32>) {
-    let layers = spec::load("mass-spring").unwrap().with_override("task.segments", "3");
+    let layers = hwasp_testing::layers("mass-spring").with_override("task.segments", "3");
     let layers = layers.with_override("design.logit_half_width", "1");
-    let assembly = Assembly::new(&spec::resolve(layers, None).unwrap()).unwrap();
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, None).unwrap()).unwrap();
     let params = assembly.init();
     (assembly, params)
 }

@@ -1,4 +1,4 @@
-//! Projects for mechanisms of one's own: a folder with a law, a plant, a task, an experiment and tests, ready to be built.
+//! Projects for your own mechanism: a folder with a law, a plant, a task, an experiment and tests, ready to be built.
 
 mod name;
 mod template;

@@ -4,9 +4,9 @@
 //! ([`GeomId`], [`BodyId`], …), which hold for every simulation of the same text. Nothing here allocates after the
 //! construction. SI units; forces in N and N·m, angles in rad, positions and forces of bodies in the world's frame.
 //!
-//! Three habits of the engine end at this door. It resets the state when that turns bad and goes on: here that is a
-//! [`PhysicsFault`]. It writes `MUJOCO_LOG.TXT` into the working directory: here it writes no file. And what its model
-//! may not be edited to ends the process: here that is an [`EditError`].
+//! Three habits of the engine end here. When a state turns bad, the engine resets it and goes on; here that is a
+//! [`PhysicsFault`]. The engine writes `MUJOCO_LOG.TXT` into the working directory; here it writes no file. Some edits of a
+//! model make the engine end the process; here each of them is an [`EditError`].
 
 mod contact;
 mod edit;

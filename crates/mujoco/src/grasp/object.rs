@@ -148,7 +148,7 @@ mod tests {
         let mut kinds = [0; 4];
         for _ in 0..400 {
             let object = Object::draw(&settings, 1.0, &mut rng);
-            kinds[ShapeKind::ALL.iter().position(|&k| k == object.kind).unwrap()] += 1;
+            kinds[ShapeKind::ALL.iter().position(|&(_, k)| k == object.kind).unwrap()] += 1;
             assert!(object.size.iter().all(|s| (0.04..=0.1).contains(s)), "{object:?}");
             assert!((0.1..=0.5).contains(&object.mass) && (0.5..=1.0).contains(&object.friction), "{object:?}");
             assert!(object.place.iter().all(|p| p.abs() <= 0.05));

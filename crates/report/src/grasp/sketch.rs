@@ -205,7 +205,7 @@ mod tests {
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             clearance: 0.0126,
         };
-        for kind in ShapeKind::ALL {
+        for &(_, kind) in ShapeKind::ALL {
             let moments = vec![pose.clone()];
             let poses = Poses { kind, half: [0.03; 3], hand: HandDescription::default(), moments };
             let sketch = Sketch::new(std::slice::from_ref(&poses));

@@ -1,4 +1,4 @@
-//! Episodes to look at: held-out grasps of a saved run as films (GIF), and on one sheet (PNG).
+//! Episodes to look at: held-out grasps of a saved run as films (GIF) and on one sheet (PNG).
 //!
 //! `film` runs the episodes that [`evaluate`](hwasp_training::evaluate()) runs, to the bit, and keeps their poses. Only `play`
 //! draws them, in builds with the feature `renderer`.

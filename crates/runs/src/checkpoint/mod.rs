@@ -1,4 +1,4 @@
-//! Checkpoints as files: everything that a training needs to go on to the bits of one that was never interrupted.
+//! Checkpoints as files. A training that goes on from one gets the bits of a training that was never interrupted.
 //!
 //! A checkpoint is a safetensors file, which cannot run code: the arrays of an [`Archive`] with their names, and in its
 //! metadata, under `hwasp_checkpoint`, a JSON [`Header`] with the version of the format, the hash of the experiment and a

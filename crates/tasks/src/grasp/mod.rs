@@ -1,5 +1,5 @@
-//! Grasping with the underactuated hand: what of it needs no engine. What its settings are, what its environments are from
-//! outside, and its door to experiment files; the physics are in `hwasp-mujoco`.
+//! Grasping with the underactuated hand, as far as it needs no engine: its settings, what its environments look like from
+//! outside, and its [`Problem`](hwasp_problem::Problem). The physics are in `hwasp-mujoco`.
 
 mod env;
 mod problem;

@@ -1,4 +1,4 @@
-//! The door of the grasping problems to experiment files.
+//! The grasping problems as experiment files name them.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The door of both mass-spring problems to experiment files.
+//! Both mass-spring problems as experiment files name them.
 
 use hwasp_core::Dimension;
 use hwasp_problem::{AnyError, Built, Preset, Problem, Role, Words, World};

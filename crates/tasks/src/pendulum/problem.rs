@@ -1,4 +1,4 @@
-//! The door of the pendulum to experiment files.
+//! The pendulum as experiment files name it.
 
 use hwasp_core::Initial;
 use hwasp_problem::{AnyError, Built, Preset, Problem, Role, Words};

@@ -1,4 +1,4 @@
-//! The door of the reach problem to experiment files.
+//! The reach problem as experiment files name it.
 
 use hwasp_core::{Dimension, Initial};
 use hwasp_problem::{AnyError, Built, Preset, Problem, Role, Words};

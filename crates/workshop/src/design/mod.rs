@@ -1,7 +1,7 @@
-//! What can be said of a run's design without simulating it.
+//! What is known about a run's design without a simulation.
 //!
-//! The experiment and `design.toml` of the run folder are enough: neither policy nor physics are put together, so that a hand
-//! is read by programs without the engine too.
+//! The experiment and `design.toml` of the run folder are enough. Neither policy nor physics are built, so programs without the
+//! engine can read a hand, too.
 
 mod hand;
 

@@ -1,8 +1,8 @@
-//! From a trained hand to parts that can be bought and made: pulleys, springs of a catalogue, holes for their legs; what
-//! rounding to them costs; and the controller trained further on them.
+//! From a trained hand to parts that can be bought and made: pulleys, springs from a catalogue, holes for their legs. What
+//! rounding to them costs, and the controller trained further on them.
 //!
-//! A design is [`snap`]ped to the nearest parts, [`Snapped::judge`] simulates it before and after on the same held-out episodes,
-//! and a [`Tuning`] goes on with the controller. [`PartsList`] is what is written.
+//! [`snap`] takes the nearest parts for a design. [`Snapped::judge`] simulates the design before and after, on the same held-out
+//! episodes. A [`Tuning`] trains the controller further. A [`PartsList`] is what is written.
 
 mod bench;
 mod catalogue;

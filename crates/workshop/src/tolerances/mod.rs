@@ -1,4 +1,4 @@
-//! Which part has to be precise: return and success with each design parameter off by its manufacturing error, one at a time,
+//! Which part has to be precise. Each design parameter in turn is off by its manufacturing error; return and success are measured
 //! on the same held-out episodes.
 
 mod errors;

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use hwasp_core::{Policy, Purpose, Stream, stream};
 use hwasp_diff::{Program, Scalar};
-use hwasp_training::{Assembly, spec};
+use hwasp_training::Assembly;
 use prost::Message;
 use rand::RngExt;
 
@@ -24,9 +24,9 @@ const MOST: f64 = 2e-6;
 
 /// An experiment with parameters drawn at random, so that every one of them counts.
 fn deployed(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Deployed {
-    let layers = spec::load(experiment).unwrap();
+    let layers = hwasp_testing::layers(experiment);
     let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
-    let assembly = Assembly::new(&spec::resolve(layers, Some(method)).unwrap()).unwrap();
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap();
     let mut random = stream(5, Purpose::Samples, 0, 0);
     let inputs = assembly.policy.obs_dim();
     let mut params: Vec<f32> = (0..assembly.policy.param_count()).map(|_| random.random_range(-0.3..0.3)).collect();

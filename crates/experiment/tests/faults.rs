@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_experiment::{LONGEST_FILE, Layers, load, resolve};
+use hwasp_experiment::{LONGEST_FILE, Layers, load};
+use hwasp_testing::{catalogue, layers, resolve};
 
 /// The faults of a text that is not what it should be.
 fn faults(text: &str, method: Option<&str>) -> String {
@@ -14,7 +15,7 @@ fn faults(text: &str, method: Option<&str>) -> String {
 
 /// The faults of an experiment that is right, with options that are not.
 fn option_faults(experiment: &str, options: &[&str]) -> String {
-    let layers = load(experiment).expect("it comes with the program");
+    let layers = layers(experiment);
     let layers = options.iter().fold(layers, |layers, option| layers.with_assignment(option));
     resolve(layers, None).expect_err("this has to be refused").to_string()
 }
@@ -145,7 +146,7 @@ fn names_and_paths() {
     let large = folder.join("large.toml");
     std::fs::write(&large, vec![b'#'; LONGEST_FILE + 7]).unwrap();
     let told = |path: &str| {
-        let errors = load(path).expect_err("this has to be refused");
+        let errors = load(path, catalogue()).expect_err("this has to be refused");
         errors.to_string().replace(&folder.display().to_string(), "FOLDER")
     };
     let told = [
@@ -162,8 +163,8 @@ fn names_and_paths() {
 #[test]
 fn a_file_is_read_from_its_path() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../experiments/paper/mass-spring.toml");
-    let from_path = resolve(load(path).unwrap(), None).unwrap();
-    assert_eq!(from_path, resolve(load("paper/mass-spring").unwrap(), None).unwrap());
+    let from_path = resolve(layers(path), None).unwrap();
+    assert_eq!(from_path, resolve(layers("paper/mass-spring"), None).unwrap());
 }
 
 #[test]

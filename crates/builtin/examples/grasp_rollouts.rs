@@ -18,7 +18,7 @@ use hwasp_core::{
     EnvSpec, Environment, EpisodeKind, Episodes, Executor, Robot, Sampler, Serial, Step, Stream, Threads,
 };
 use hwasp_mujoco::engine::{BodyId, Simulation, Wrench};
-use hwasp_mujoco::grasp::{Grasp, GraspTask, Object};
+use hwasp_mujoco::grasp::{Grasp, GraspTask, Object, settings_of};
 use hwasp_runs::SavedRun;
 use hwasp_tasks::hand::{MjcfOptions, SUBSTEPS, mjcf, names};
 use serde_json::json;
@@ -155,9 +155,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let episodes = arguments.next().map_or(Ok(4), |count| count.parse::<u64>())?;
     let threads = arguments.next().map_or(Ok(1), |count| count.parse::<usize>())?;
-    let run = SavedRun::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp"))?;
+    let run = SavedRun::open(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/z-grasp"),
+        &hwasp_builtin::catalogue(),
+    )?;
     let (assembly, params) = (run.assembly(), run.params()?);
-    let grasp = Arc::new(assembly.grasp(None)?);
+    let task = assembly.experiment().task.settings().ok_or("z-grasp is a grasp")?;
+    let grasp = Arc::new(Grasp::new(settings_of(task))?);
     let model = grasp.robot(None).plant().simulation().clone();
     let bodies = [model.body(names::PALM)?, model.body(names::OBJECT)?];
     let asked = |indices| Episodes { seed: 0, iteration: 0, indices, progress: 0.0, kind: EpisodeKind::Training };

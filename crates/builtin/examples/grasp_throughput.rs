@@ -13,7 +13,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use hwasp_core::{EnvSpec, Environment, EpisodeKind, Episodes, Outcome, Sampler, Step, Stream, Threads};
-use hwasp_training::{Assembly, spec};
+use hwasp_experiment::{load, resolve};
+use hwasp_training::Assembly;
 use serde_json::json;
 
 /// An environment that adds up the time of its steps.
@@ -24,7 +25,7 @@ struct Timed {
 
 impl Environment for Timed {
     fn spec(&self) -> &EnvSpec {
-        self.inner.experiment()
+        self.inner.spec()
     }
 
     fn set_progress(&mut self, progress: f64) {
@@ -68,8 +69,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let threads = arguments.next().transpose()?.unwrap_or(2);
     let iterations = arguments.next().transpose()?.unwrap_or(2);
     let settings = [("train.env_steps", (20_000 * iterations).to_string())];
-    let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
-    let mut assembly = Assembly::new(&spec::resolve(layers, None)?)?;
+    let catalogue = hwasp_builtin::catalogue();
+    let layers =
+        settings.iter().fold(load("z-grasp", &catalogue)?, |layers, (key, value)| layers.with_override(key, value));
+    let mut assembly = Assembly::new(&resolve(layers, None, &catalogue)?)?;
     let (whole, nanoseconds) = (Arc::clone(&assembly.worlds.training.make), Arc::new(AtomicU64::new(0)));
     let counted = Arc::clone(&nanoseconds);
     assembly.worlds.training.make = Arc::new(move |horizon| {

@@ -14,12 +14,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use hwasp_core::{Batch, EpisodeKind, Episodes, Policy, Sampler, Threads};
-use hwasp_training::{Assembly, spec};
+use hwasp_experiment::{load, resolve};
+use hwasp_tasks::grasp::GraspTaskSettings;
+use hwasp_training::Assembly;
 use serde_json::json;
 
 fn write(folder: &Path, assembly: &Assembly, batch: &Batch) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
-    let (policy, transmission) = (&assembly.policy, assembly.grasp(None)?.settings().hand.transmission.clone());
+    let task: &GraspTaskSettings = assembly.experiment().task.settings().ok_or("z-grasp is a grasp")?;
+    let (policy, transmission) = (&assembly.policy, task.hand().transmission);
     let groups = policy.groups().iter().map(|group| (group.kind.name(), [group.range.start, group.range.end]));
     let limits = |(lo, hi)| [lo, hi];
     let about = json!({
@@ -58,8 +61,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let share = arguments.next().unwrap_or_else(|| "1.0".to_owned());
     // Ten products, however small the residual.
     let settings = [("trpo.fisher_rows", share.as_str()), ("trpo.cg_iterations", "10"), ("trpo.cg_tolerance", "0.0")];
-    let layers = settings.iter().fold(spec::load("z-grasp")?, |layers, (key, value)| layers.with_override(key, value));
-    let assembly = Assembly::new(&spec::resolve(layers, None)?)?;
+    let catalogue = hwasp_builtin::catalogue();
+    let layers =
+        settings.iter().fold(load("z-grasp", &catalogue)?, |layers, (key, value)| layers.with_override(key, value));
+    let assembly = Assembly::new(&resolve(layers, None, &catalogue)?)?;
 
     let executor = Threads::new(threads)?;
     let train = &assembly.experiment().train;

@@ -1,7 +1,7 @@
 //! Training from within a program of one's own: an experiment with some settings changed, an observer that listens, and
 //! the trained policy put to use.
 //!
-//! Run it: `cargo run --release -p hwasp-training --example embed_training`
+//! Run it: `cargo run --release -p hwasp-builtin --example embed_training`
 
 #![allow(clippy::print_stdout)] // an example shows what it finds
 
@@ -9,7 +9,8 @@ use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::{Actor, Purpose, Serial, stream};
-use hwasp_training::{Assembly, Event, Observer, ObserverError, spec, train};
+use hwasp_experiment::{load, resolve};
+use hwasp_training::{Assembly, Event, Observer, ObserverError, train};
 
 /// Prints every fiftieth iteration. A run folder, a progress bar and a logger are observers too.
 struct Listener;
@@ -31,9 +32,11 @@ impl Observer for Listener {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let catalogue = hwasp_builtin::catalogue();
     // An experiment by name, or the path of a TOML file; each override is what `--set` is on the command line.
-    let layers = spec::load("reach")?.with_override("task.goal", "30 cm").with_override("train.env_steps", "400_000");
-    let assembly = Assembly::new(&spec::resolve(layers, Some("hwasp"))?)?;
+    let layers =
+        load("reach", &catalogue)?.with_override("task.goal", "30 cm").with_override("train.env_steps", "400_000");
+    let assembly = Assembly::new(&resolve(layers, Some("hwasp"), &catalogue)?)?;
 
     // Set to true from another thread or a signal handler, the flag ends training after the iteration at hand.
     let stop = AtomicBool::new(false);

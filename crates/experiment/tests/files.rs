@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_experiment::{EXPERIMENTS, Experiment, InitialDesign, Layers, Method, Place, Problem, load, resolve};
+use hwasp_algos::{PpoConfig, TrpoConfig};
+use hwasp_experiment::{Experiment, InitialDesign, Layers, Method, Place};
+use hwasp_tasks::mass_spring::StiffnessTask;
+use hwasp_testing::{catalogue, layers as load, resolve};
 use proptest::prelude::*;
 
 /// What a run folder keeps has to give the same experiment again.
@@ -13,12 +16,25 @@ fn read_back(spec: &Experiment) -> Experiment {
     resolve(layers, None).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
+fn ppo(spec: &Experiment) -> &PpoConfig {
+    spec.learner.of().unwrap()
+}
+
+fn trpo(spec: &Experiment) -> &TrpoConfig {
+    spec.learner.of().unwrap()
+}
+
+fn stiffness(spec: &Experiment) -> &StiffnessTask {
+    spec.task.settings().unwrap()
+}
+
 #[test]
 fn every_experiment_resolves_for_every_method_and_is_read_back() {
-    for (name, _) in EXPERIMENTS {
+    for preset in catalogue().presets() {
+        let name = preset.name;
         for (method, expected) in Method::ALL {
-            let spec = resolve(load(name).unwrap(), Some(method)).unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert_eq!(spec.name, *name, "the file is called what its experiment is");
+            let spec = resolve(load(name), Some(method)).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(spec.name, name, "the file is called what its experiment is");
             assert_eq!(spec.method, *expected);
             assert_eq!(read_back(&spec), spec);
         }
@@ -27,9 +43,9 @@ fn every_experiment_resolves_for_every_method_and_is_read_back() {
 
 #[test]
 fn the_resolved_file_says_everything() {
-    let spec = resolve(load("paper/bar-length").unwrap(), None).unwrap();
+    let spec = resolve(load("paper/bar-length"), None).unwrap();
     insta::assert_snapshot!("resolved_paper_bar_length", spec.to_toml().unwrap());
-    let reach = resolve(load("reach").unwrap().with_override("design.initial", "0.7"), Some("fixed")).unwrap();
+    let reach = resolve(load("reach").with_override("design.initial", "0.7"), Some("fixed")).unwrap();
     insta::assert_snapshot!("resolved_reach_fixed", reach.to_toml().unwrap());
 }
 
@@ -37,13 +53,16 @@ fn the_resolved_file_says_everything() {
 #[test]
 fn trpo_discounts_as_ppo_does_unless_it_is_told_otherwise() {
     let spec = |settings: &[&str]| {
-        let layers = load("pendulum").unwrap().with_assignment("learner.algorithm = trpo");
+        let layers = load("pendulum").with_assignment("learner.algorithm = trpo");
         resolve(settings.iter().fold(layers, |layers, s| layers.with_assignment(s)), None).unwrap()
     };
     let plain = spec(&[]);
-    assert_eq!((plain.discount(), plain.trpo.gae_lambda, plain.baseline.minibatch_rows), (0.9, 0.95, 100));
+    assert_eq!(
+        (plain.discount(), trpo(&plain).advantages.gae_lambda, plain.baseline.mlp.minibatch_rows),
+        (0.9, 0.95, 100)
+    );
     let told = spec(&["trpo.discount = 0.95", "baseline.minibatch_rows = 50"]);
-    assert_eq!((told.discount(), told.ppo.discount, told.baseline.minibatch_rows), (0.95, 0.9, 50));
+    assert_eq!((told.discount(), ppo(&told).discount, told.baseline.mlp.minibatch_rows), (0.95, 0.9, 50));
 }
 
 #[test]
@@ -53,18 +72,17 @@ fn later_layers_win() {
                 [methods.minimal.ppo]\nclip_ratio = 0.2\nepochs = 2\n";
     let layers = || Layers::from_text("a.toml", text).unwrap();
     let spec = resolve(layers().with_assignment("ppo.epochs = 3"), None).unwrap();
-    assert_eq!((spec.ppo.discount, spec.ppo.clip_ratio, spec.ppo.epochs), (0.5, 0.2, 3));
+    assert_eq!((ppo(&spec).discount, ppo(&spec).clip_ratio, ppo(&spec).epochs), (0.5, 0.2, 3));
     assert_eq!(spec.design.placement, Place::Action);
     // The method of the command line decides whose tables count, and the last one given holds.
     let spec = resolve(layers().with_override("method", "fixed"), Some("hwasp")).unwrap();
-    assert_eq!((spec.method, spec.ppo.clip_ratio, spec.ppo.epochs), (Method::Hwasp, 0.1, 1));
+    assert_eq!((spec.method, ppo(&spec).clip_ratio, ppo(&spec).epochs), (Method::Hwasp, 0.1, 1));
     assert_eq!(spec.design.placement, Place::Graph);
 }
 
 #[test]
 fn options_need_no_quotes() {
     let layers = load("mass-spring")
-        .unwrap()
         .with_assignment("noise.effort=2500 mN")
         .with_assignment("task.effort_clip=5 N")
         .with_assignment("design.placements.stiffness[2..4]=action")
@@ -72,11 +90,10 @@ fn options_need_no_quotes() {
         .with_assignment("design.initial=middle")
         .with_option("--env-steps 1e6".into(), "train.env_steps", "1e6");
     let spec = resolve(layers, None).unwrap();
-    assert_eq!(spec.noise.effort.unwrap().value, 2.5);
+    assert_eq!(spec.noise.effort.unwrap(), 2.5);
     assert_eq!(spec.train.env_steps, 1_000_000);
     assert_eq!(spec.design.initial, InitialDesign::Middle);
-    let Problem::Stiffness(problem) = &spec.task.problem else { panic!("{:?}", spec.task) };
-    assert_eq!(problem.base.effort_clip, Some(5.0));
+    assert_eq!(stiffness(&spec).base.effort_clip, Some(5.0));
     let places: Vec<_> = (0..10).filter(|&i| spec.design.place_of(i) != Place::Graph).collect();
     assert_eq!(places, [2, 3, 9]);
     assert_eq!(spec.design.place_of(9), Place::Fixed);
@@ -85,12 +102,9 @@ fn options_need_no_quotes() {
 
 #[test]
 fn an_absent_limit_can_be_asked_for() {
-    let clip = |layers: Layers| match resolve(layers, None).unwrap().task.problem {
-        Problem::Stiffness(problem) => problem.base.effort_clip,
-        other => panic!("{other:?}"),
-    };
-    assert_eq!(clip(load("paper/mass-spring").unwrap()), Some(5.0));
-    assert_eq!(clip(load("paper/mass-spring").unwrap().with_assignment("task.effort_clip=none")), None);
+    let clip = |layers: Layers| stiffness(&resolve(layers, None).unwrap()).base.effort_clip;
+    assert_eq!(clip(load("paper/mass-spring")), Some(5.0));
+    assert_eq!(clip(load("paper/mass-spring").with_assignment("task.effort_clip=none")), None);
 }
 
 #[test]
@@ -98,7 +112,7 @@ fn defaults_fit_each_other() {
     // 3 episodes of 30 steps are fewer rows than the usual minibatch, and the usual episode is longer than these.
     let text = "name = 'small'\ntask = { problem = 'reach' }\ntrain = { episodes_per_iteration = 3 }";
     let spec = resolve(Layers::from_text("small.toml", text).unwrap(), None).unwrap();
-    assert_eq!((spec.task.horizon, spec.train.episode_steps, spec.ppo.minibatch_rows), (30, 30, 90));
+    assert_eq!((spec.task.horizon, spec.train.episode_steps, ppo(&spec).minibatch_rows), (30, 30, 90));
     assert_eq!(read_back(&spec), spec);
 }
 
@@ -229,7 +243,7 @@ proptest! {
         ],
         value in prop_oneof![any::<String>(), "[0-9\\[\\]\"'a-zN/., {}=-]{0,20}"],
     ) {
-        let layers = load("mass-spring").unwrap().with_override(&key, &value).with_assignment(&value);
+        let layers = load("mass-spring").with_override(&key, &value).with_assignment(&value);
         match resolve(layers, None) {
             Ok(spec) => prop_assert_eq!(read_back(&spec), spec),
             Err(errors) => prop_assert!(!errors.to_string().is_empty()),

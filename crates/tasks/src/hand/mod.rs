@@ -56,9 +56,9 @@ pub use description::{
 pub use error::HandError;
 pub use law::{PalmMotion, TendonHand, TendonHandSettings};
 pub use mjcf::{Drive, MjcfOptions, mjcf};
-pub use parts::{Part, SeatedSpring, parts, scad};
+pub use parts::{Part, parts, scad};
 pub use solid::{Mesh, MeshError};
 pub use space::{DESIGN_LEN, HandParameter, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, pinch_band, torque_ratio};
 pub use urdf::urdf;
-pub use workshop::Workshop;
+pub use workshop::{SeatedSpring, Workshop};

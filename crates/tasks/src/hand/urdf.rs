@@ -124,9 +124,9 @@ fn child(link: &str) -> Element {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parts::{SeatedSpring, parts};
+    use super::super::parts::parts;
     use super::super::space::SEARCHED;
-    use super::super::workshop::Workshop;
+    use super::super::workshop::{SeatedSpring, Workshop};
     use super::*;
 
     fn text() -> String {

@@ -9,6 +9,17 @@ use serde::{Deserialize, Serialize};
 /// The table that its keys are in.
 const TABLE: &str = "bench";
 
+/// A spring as its joint has to make room for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeatedSpring {
+    /// Diameter of its wire, and so of its legs, m.
+    pub wire: f64,
+    /// Outer diameter of the coil, m. It is widest when it is free.
+    pub outer: f64,
+    /// Length of the coil along the axle, m. It is longest with the joint closed.
+    pub length: f64,
+}
+
 /// A workshop. All defaults are our choice, for a finger of 24 mm.
 ///
 /// Axle and rooms are those of a joint whose pulley has two springs beside it, as the paper's hand has; 15° are 24 holes, which
@@ -144,9 +155,28 @@ impl Workshop {
         (TAU / self.hole_pitch).round() as u32
     }
 
+    /// Radius of a printed hole for an axle, m.
+    pub fn bore(&self) -> f64 {
+        0.5 * (self.axle + 0.5 * self.print_clearance)
+    }
+
     /// The least radius of a groove, m: there is a wall between it and the hole for the axle.
     pub fn least_groove(&self) -> f64 {
-        0.5 * (self.axle + 0.5 * self.print_clearance) + self.wall
+        self.bore() + self.wall
+    }
+
+    /// Radius of a printed hole for the leg of a spring, m.
+    pub fn leg_hole(&self, spring: &SeatedSpring) -> f64 {
+        0.5 * (spring.wire + self.print_clearance)
+    }
+
+    /// From the axle to the legs of a spring, m: beside the coil, clear of the axle, and so far out that there are walls between the
+    /// holes.
+    pub fn leg_circle(&self, spring: &SeatedSpring) -> f64 {
+        let hole = self.leg_hole(spring);
+        let beside = 0.5 * spring.outer + self.print_clearance + 0.5 * spring.wire;
+        let apart = (2.0 * hole + self.wall) / (2.0 * (0.5 * self.hole_pitch).sin());
+        beside.max(self.bore() + self.wall + hole).max(apart)
     }
 
     /// Springs of a joint on the side of positive x of its pulley, and on the other side.

@@ -5,18 +5,7 @@ use super::super::error::{HandError, positive, within};
 use super::super::names::{DIGITS, KINDS};
 use super::super::solid::around;
 use super::super::space::DESIGN_LEN;
-use super::super::workshop::Workshop;
-
-/// A spring as its joint has to make room for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeatedSpring {
-    /// Diameter of its wire, and so of its legs, m.
-    pub wire: f64,
-    /// Outer diameter of the coil, m. It is widest when it is free.
-    pub outer: f64,
-    /// Length of the coil along the axle, m. It is longest with the joint closed.
-    pub length: f64,
-}
+use super::super::workshop::{SeatedSpring, Workshop};
 
 /// What the parts of a hand are laid out by.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +35,7 @@ const SLIMMER: &str = "have a smaller `coil_room`, `axle`, `line` or `wall`, or 
 impl Layout<'_> {
     /// Radius of a hole for an axle.
     pub(super) fn bore(&self) -> f64 {
-        0.5 * (self.workshop.axle + 0.5 * self.workshop.print_clearance)
+        self.workshop.bore()
     }
 
     /// Radius of a hole for a pin.
@@ -61,16 +50,12 @@ impl Layout<'_> {
 
     /// Radius of a hole for a spring's leg.
     pub(super) fn leg_hole(&self, kind: usize) -> f64 {
-        0.5 * (self.springs[kind].wire + self.workshop.print_clearance)
+        self.workshop.leg_hole(&self.springs[kind])
     }
 
-    /// From the axle to the legs: beside the coil, clear of the axle, and so far out that there are walls between the holes.
+    /// From the axle to the legs.
     pub(super) fn leg_circle(&self, kind: usize) -> f64 {
-        let Workshop { print_clearance, wall, hole_pitch, .. } = *self.workshop;
-        let SeatedSpring { wire, outer, .. } = self.springs[kind];
-        let beside = 0.5 * outer + print_clearance + 0.5 * wire;
-        let apart = (2.0 * self.leg_hole(kind) + wall) / (2.0 * (0.5 * hole_pitch).sin());
-        beside.max(self.bore() + wall + self.leg_hole(kind)).max(apart)
+        self.workshop.leg_circle(&self.springs[kind])
     }
 
     /// Radius of the pockets for springs and their legs.

@@ -35,10 +35,9 @@ use super::error::HandError;
 use super::names::KINDS;
 use super::solid::{Layer, Mesh, stack};
 use super::space::DESIGN_LEN;
-use super::workshop::Workshop;
+use super::workshop::{SeatedSpring, Workshop};
 use layout::Layout;
 
-pub use layout::SeatedSpring;
 pub use scad::scad;
 
 /// The part that every digit is joined to.

@@ -7,9 +7,9 @@ use super::super::error::HandError;
 use super::super::names::KINDS;
 use super::super::solid::{HOLE_SEGMENTS, SEGMENTS};
 use super::super::space::DESIGN_LEN;
-use super::super::workshop::Workshop;
+use super::super::workshop::{SeatedSpring, Workshop};
 use super::layout::{FRAME, Layout, PIN_CIRCLE};
-use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS, SeatedSpring};
+use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS};
 
 /// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `layout.rs` in OpenSCAD's language.
 const MODULES: &str = include_str!("hand.scad");

@@ -29,7 +29,7 @@ fn springs(list: &PartsList) -> Markup {
     html! {
         p {
             "Springs are from the catalogue " code { (list.catalogue.name) } " of " (grouped(list.catalogue.springs as u64))
-            "; pulleys are turned for a line of " (mm(list.bench.line)) " mm."
+            "; pulleys are turned for a line of " (mm(list.workshop.line)) " mm."
         }
         table.cards {
             caption { "The parts of each kind of joint, and how near they come to what was trained" }

@@ -22,7 +22,7 @@ PINNED = ["mujoco==3.17.0", "yourdfpy==0.0.60", "urdf_parser_py==0.0.4", "trimes
 
 # Runs inside the environment, with the folder of the export and the run's design.toml.
 INSIDE = """
-import itertools, sys, tomllib, warnings
+import itertools, json, re, sys, tomllib, warnings
 from pathlib import Path
 import mujoco, numpy, trimesh, yourdfpy
 from urdf_parser_py import urdf as urdf_parser, xml_reflection
@@ -47,6 +47,11 @@ design = tomllib.loads(design_file.read_text())
 radius, stiffness, preload = (
     [design[f"{kind}_{what}"]["as_built"][0] for kind in KINDS] for what in ("radius", "stiffness", "preload")
 )
+# What is printed is made for parts that are bought: the numbers at the head of hand.scad, in mm.
+head = (folder / "hand.scad").read_text().split("$fn")[0]
+scad = {name: json.loads(value) for name, value in re.findall(r"^(\\w+) = ([^;]+);", head, re.MULTILINE)}
+near = numpy.abs(numpy.array(scad["radius"]) - 1e3 * numpy.array(radius)).max()
+assert near < 0.2, f"the pulleys that are printed are {near} mm off those of the design"
 random = numpy.random.default_rng(7)
 
 
@@ -130,16 +135,19 @@ assert used == {f"{name}.stl" for name in parts} and len(parts) == 9, sorted(par
 worst = 0.0
 for kind, name in enumerate(KINDS):
     link = parts[f"{name}_link"]
-    # To the stop in the fork, to the tip.
-    end = (50 + 13.2, 40 + 12)[kind % 2]
-    close(f"{name}_link", link.bounds, [[-11, -12, -12], [11, 12, end]], 0.01)
-    # Half of the line's 0.6 mm below its centre; corners in a groove, which holes of the flange touch, on the other side.
+    # Half of the width: groove, flange, prong, springs, cheek, and what moves beside each other.
+    line, free, room = scad["line"], scad["print_clearance"], -(-scad["springs"] // 2) * scad["spring_room"]
+    half = line + free + scad["flange"] + free + scad["plate"] + room + free + free + scad["cheek"]
+    # To the stop in the fork, beyond the largest pulley; to the tip.
+    end = (50 + 12 + line / 2 + free + scad["wall"] + 1.5 * free, 40 + 12)[kind % 2]
+    close(f"{name}_link", link.bounds, [[-half, -12, -12], [half, 12, end]], 0.01)
+    # Half of the line below its centre; corners in a groove, which holes of the flange touch, on the other side.
     corners = parts[f"{name}_pulley"].vertices
-    corners = corners[numpy.isclose(corners[:, 0], 0.8)]
+    corners = corners[numpy.isclose(corners[:, 0], line + free)]
     away = numpy.hypot(corners[:, 1], corners[:, 2])
-    bottom = away[away > 1e3 * radius[kind] - 0.6].min()
-    worst = max(worst, close(f"groove of {name}", bottom + 0.3, 1e3 * radius[kind], 0.005))
-print(f"trimesh {trimesh.__version__}: all nine watertight; the line runs at the radii of the design to {1e3 * worst:.1f} um")
+    bottom = away[away > scad["radius"][kind] - line].min()
+    worst = max(worst, close(f"groove of {name}", bottom + line / 2, scad["radius"][kind], 0.005))
+print(f"trimesh {trimesh.__version__}: all nine watertight; the line runs at the radii of the parts to {1e3 * worst:.1f} um")
 
 # Parts that are joined, and the pulleys in them, at 25 poses.
 placed = [(link.name, v.geometry.mesh.filename[:-4]) for link in robot.robot.links for v in link.visuals]

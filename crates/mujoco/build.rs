@@ -24,13 +24,13 @@ fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=link");
     println!("cargo::rerun-if-env-changed={LIB_DIR_VARIABLE}");
-    match library_folder() {
-        Ok(folder) => {
+    match library_folder().and_then(|folder| Ok((link_here(&folder)?, folder))) {
+        Ok((here, folder)) => {
             let folder = folder.display();
             // A library that has been deleted is fetched again.
             println!("cargo::rerun-if-changed={folder}/{LIBRARY}");
-            println!("cargo::rustc-link-search=native={folder}");
-            // For this crate's tests. Link arguments do not reach other packages; they read the metadata.
+            println!("cargo::rustc-link-search=native={}", here.display());
+            // For programs that Cargo does not start. Link arguments do not reach other packages; they read the metadata.
             println!("cargo::rustc-link-arg=-Wl,-rpath,{folder}");
             println!("cargo::metadata=LIBDIR={folder}");
             ExitCode::SUCCESS
@@ -70,6 +70,19 @@ fn library_folder() -> Result<PathBuf, String> {
         fetch(&folder, &architecture)?;
     }
     Ok(folder)
+}
+
+/// Links the library of `folder` into this script's own folder. Cargo lets the programs that it starts, the tests of every
+/// crate among them, search there for libraries.
+fn link_here(folder: &Path) -> Result<PathBuf, String> {
+    let here = PathBuf::from(variable("OUT_DIR")?);
+    let link = here.join(LIBRARY);
+    // What an earlier build left may be another library.
+    let _ = fs::remove_file(&link);
+    fs::hard_link(folder.join(LIBRARY), &link)
+        .or_else(|_| fs::copy(folder.join(LIBRARY), &link).map(drop))
+        .map_err(|error| format!("{} cannot be written: {error}.", link.display()))?;
+    Ok(here)
 }
 
 /// The folder above all profiles, so that debug and release builds share one library. `OUT_DIR` is

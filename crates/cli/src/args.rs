@@ -1,7 +1,8 @@
 //! The command line.
 
+mod parse;
+
 use std::num::NonZeroUsize;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -10,6 +11,8 @@ use hwasp_experiment::{Method, TrainSettings};
 use hwasp_export::{Kind, MOST_SAMPLES};
 use hwasp_plot::XAxis;
 use hwasp_report::play;
+
+use parse::{finite, path, seconds, side, threads, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,10 +33,6 @@ const MOST_STEPS: u64 = 1_000_000_000_000;
 const MOST_EPISODES: u64 = 1_000_000;
 /// The most seeds of a comparison: a picture shows a thousand runs.
 const MOST_SEEDS: u64 = 100;
-/// The longest time between two checkpoints, s: a day.
-const MOST_SECONDS: f64 = 86_400.0;
-/// The most threads: far more than help.
-const MOST_THREADS: u64 = 1024;
 
 /// Design a robot's body and its controller together.
 ///
@@ -57,6 +56,15 @@ pub(crate) struct Args {
 pub(crate) enum LogFormat {
     Text,
     Json,
+}
+
+impl LogFormat {
+    /// What a command line asks for that cannot be read.
+    pub(crate) fn typed() -> Self {
+        let words: Vec<_> = std::env::args_os().collect();
+        let apart = words.windows(2).any(|pair| pair[0] == "--log-format" && pair[1] == "json");
+        if apart || words.iter().any(|word| word == "--log-format=json") { Self::Json } else { Self::Text }
+    }
 }
 
 /// What a log has, at least.
@@ -97,6 +105,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Check an experiment file and report all that is wrong with it at once
     Check(ExperimentArgs),
+    /// Print the JSON Schema of experiment files, by which editors complete and check them
+    Schema(SchemaArgs),
     /// List the experiments that come with the program
     List,
     /// Draw the law of an experiment as a computational graph
@@ -193,10 +203,10 @@ pub(crate) struct TrainArgs {
     #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: NonZeroUsize,
     /// The run folder [default: a new one under runs/]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Go on with a training that was interrupted, from its newest checkpoint: the result has the same bits
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["experiment", "method", "set", "seed", "env_steps", "out"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["experiment", "method", "set", "seed", "env_steps", "out"], value_parser = path())]
     pub(crate) resume: Option<PathBuf>,
     /// Time between two checkpoints, at least
     #[arg(long, value_name = "SECONDS", default_value = "30", allow_negative_numbers = true, value_parser = seconds)]
@@ -212,6 +222,7 @@ pub(crate) struct TrainArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct EvalArgs {
     /// A run folder, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     #[command(flatten)]
     pub(crate) held_out: HeldOutArgs,
@@ -233,9 +244,10 @@ pub(crate) struct EvalArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct DesignArgs {
     /// A run folder, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// Where a hand's closing chart is drawn, closing.svg and closing.png [default: the run folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Print JSON, for scripts; the chart is then drawn only where --out says
     #[arg(long)]
@@ -245,9 +257,10 @@ pub(crate) struct DesignArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
     /// A run folder, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// The folder; files of an earlier export of the same run are replaced [default: export/ in the run folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Also write random observations with this program's answers, to hold another runtime against: samples.safetensors
     #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=MOST_SAMPLES))]
@@ -303,10 +316,11 @@ impl KindArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct PartsArgs {
     /// A run folder of a grasping problem, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// Springs to choose from, a CSV file with the columns of docs/parts.md [default: one that comes with the program, of
     /// standard sizes and nobody's stock]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub(crate) catalogue: Option<PathBuf>,
     /// Set what the workshop has, such as `axle="3 mm"` or `hole_pitch="10 deg"`; may be repeated
     #[arg(long = "bench", value_name = "KEY=VALUE")]
@@ -317,13 +331,14 @@ pub(crate) struct PartsArgs {
     #[command(flatten)]
     pub(crate) held_out: HeldOutArgs,
     /// The folder of the list; its files are replaced [default: build/ in the run folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct TolerancesArgs {
     /// A run folder, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// How far a parameter may be off, such as `radius="0.1 mm"`, `thumb_distal_stiffness="10 %"`; may be repeated [default: of a
     /// hand radius 0.1 mm, stiffness 5 %, preload 0.13 rad; otherwise 5 %]
@@ -332,7 +347,7 @@ pub(crate) struct TolerancesArgs {
     #[command(flatten)]
     pub(crate) held_out: HeldOutArgs,
     /// The folder of figures and pictures; files there are replaced [default: build/ in the run folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
 }
 
@@ -360,6 +375,7 @@ impl HeldOutArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReplayArgs {
     /// A file in `faults` or `checkpoints` of a run folder
+    #[arg(value_parser = path())]
     pub(crate) file: PathBuf,
     /// Threads for episodes; they do not change the result
     #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
@@ -369,6 +385,7 @@ pub(crate) struct ReplayArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlayArgs {
     /// A run folder of a grasping problem, as `hwasp train` writes one
+    #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// Episodes
     #[arg(long, default_value = "4", allow_negative_numbers = true, value_parser = whole(1..=play::MOST_EPISODES))]
@@ -386,7 +403,7 @@ pub(crate) struct PlayArgs {
     #[arg(long)]
     pub(crate) native_tendons: bool,
     /// The folder of the pictures; those of the same name are replaced [default: play/ in the run folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Pixels across of a picture
     #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
@@ -420,10 +437,10 @@ impl AxisArg {
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlotArgs {
     /// Run folders, as `hwasp train` writes them
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = path())]
     pub(crate) runs: Vec<PathBuf>,
     /// The picture, .svg or .png
-    #[arg(long, value_name = "FILE", default_value = "curves.svg")]
+    #[arg(long, value_name = "FILE", default_value = "curves.svg", value_parser = path())]
     pub(crate) out: PathBuf,
     /// What the curves are drawn against
     #[arg(long, value_enum, default_value_t = AxisArg::Steps)]
@@ -436,9 +453,10 @@ pub(crate) struct PlotArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReportArgs {
     /// A run folder, as `hwasp train` writes one, or the folder of a comparison
+    #[arg(value_parser = path())]
     pub(crate) folder: PathBuf,
     /// The report, .html [default: report.html in the folder]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
 }
 
@@ -465,7 +483,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The folder; where it holds a part of this comparison, that is continued [default: runs/compare-EXPERIMENT]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Print nothing but errors
     #[arg(long, short)]
@@ -483,7 +501,7 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The folder; a part that is there is continued [default: runs/reproduce-FIGURE]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
 }
 
@@ -499,6 +517,7 @@ pub(crate) enum TemplateArg {
 #[derive(Debug, clap::Args)]
 pub(crate) struct InitArgs {
     /// The folder of the project, empty or new
+    #[arg(value_parser = path())]
     pub(crate) folder: PathBuf,
     /// What its physics are
     #[arg(long, value_enum, default_value_t = TemplateArg::Plant)]
@@ -506,10 +525,19 @@ pub(crate) struct InitArgs {
     /// Its name as a Rust package [default: the folder's]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    /// The checkout of hwasp that it is built with [default: the one that this program was built in, or else the repository on
-    /// the network]
-    #[arg(long, value_name = "CHECKOUT")]
+    /// The checkout of hwasp that it is built with [default: the one that this program was built in]
+    #[arg(long, value_name = "CHECKOUT", value_parser = path())]
     pub(crate) path: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct SchemaArgs {
+    /// The file, .json [default: standard output]
+    #[arg(long, value_name = "FILE", value_parser = path())]
+    pub(crate) out: Option<PathBuf>,
+    /// The keys as Markdown instead: the reference in docs/experiments.md
+    #[arg(long, hide = true)]
+    pub(crate) reference: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -517,42 +545,6 @@ pub(crate) struct GraphArgs {
     #[command(flatten)]
     pub(crate) experiment: ExperimentArgs,
     /// The drawing, .svg, or .dot or .gv for Graphviz [default: Graphviz DOT on standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
-}
-
-/// Reads a side of a picture.
-fn side() -> impl Fn(&str) -> Result<u64, String> + Clone {
-    whole(play::SIDES[0]..=play::SIDES[1])
-}
-
-/// Reads a whole number within limits; as in experiment files `4e6` and `4_000_000` are such.
-fn whole(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<u64, String> + Clone {
-    move |text| {
-        let plain = text.replace('_', "");
-        // Powers of ten are exact below 2^53, far beyond any count that they are written for.
-        let exact = |x: &f64| x.fract() == 0.0 && (0.0..9.0e15).contains(x);
-        let number = plain.parse().ok().or_else(|| plain.parse().ok().filter(exact).map(|x| x as u64));
-        number
-            .filter(|number| limits.contains(number))
-            .ok_or_else(|| format!("it has to be a whole number from {} to {}", limits.start(), limits.end()))
-    }
-}
-
-/// Reads a number.
-fn finite(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "it has to be a finite number, such as -2.5".into())
-}
-
-/// Reads a time, s.
-fn seconds(text: &str) -> Result<Duration, String> {
-    let number = text.parse().ok().filter(|s| (0.0..=MOST_SECONDS).contains(s));
-    number
-        .map(Duration::from_secs_f64)
-        .ok_or_else(|| format!("it has to be a number of seconds from 0 to {MOST_SECONDS}"))
-}
-
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    let count = whole(1..=MOST_THREADS)(text)?;
-    NonZeroUsize::new(count as usize).ok_or_else(|| "it has to be at least 1".into())
 }

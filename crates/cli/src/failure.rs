@@ -108,6 +108,13 @@ fn of_run(error: &RunError) -> Option<String> {
             let run = path.display();
             format!("`hwasp eval {run}` evaluates it; for more steps train anew, with a larger --env-steps")
         }
+        RunError::OtherMachine { path, .. } => {
+            let experiment = path.join(EXPERIMENT);
+            let train = format!("`hwasp train {} --set KEY=VALUE --out FOLDER` trains one", experiment.display());
+            format!(
+                "set what belongs to its world: objects, starts, disturbances, rewards; for another machine {train}"
+            )
+        }
         RunError::Policy { path, source: PolicyFileError::Tensor { .. } } => {
             let how = "it belongs to another run, or experiment.toml or --set ask for another policy";
             format!("{how}; {}", again(&parent(path)))

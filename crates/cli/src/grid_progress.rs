@@ -63,6 +63,18 @@ impl GridProgress {
         work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// Counts a cell as done, and says what it is called.
+    fn done(&self, cell: usize) -> String {
+        self.with(|state| {
+            let cell = &mut state.cells[cell];
+            cell.done = true;
+            if let Some(bar) = cell.bar.take() {
+                bar.finish_and_clear();
+            }
+            cell.label.clone()
+        })
+    }
+
     fn bar(&self, length: u64, template: &str) -> ProgressBar {
         let bar = self.bars.add(ProgressBar::new(length.max(1)));
         // The templates are constants; should they ever be wrong, the plain bar will do.
@@ -159,14 +171,25 @@ impl Watch for GridProgress {
     }
 
     fn failed(&self, cell: usize, error: &TrainError) {
-        let label = self.with(|state| {
-            state.cells[cell].done = true;
-            if let Some(bar) = state.cells[cell].bar.take() {
-                bar.finish_and_clear();
-            }
-            state.cells[cell].label.clone()
-        });
-        // Told even where nothing else is: the table will lack it.
-        tracing::error!("{label} failed: {error}");
+        // Told even where nothing else is: there are no figures of it.
+        tracing::error!("{} failed: {error}", self.done(cell));
+    }
+
+    fn failed_before(&self, cell: usize, reason: &str) {
+        tracing::error!("{} failed before, and is not repeated: {reason}", self.done(cell));
+    }
+
+    fn waiting(&self, cell: usize, owner: &str) {
+        let label = self.with(|state| state.cells[cell].label.clone());
+        if !self.quiet {
+            remark(&format!("{label} is trained by process {owner}: waiting for it"));
+        }
+    }
+
+    fn joined(&self, cell: usize) {
+        let label = self.done(cell);
+        if !self.quiet {
+            remark(&format!("{label}: taken from the other process"));
+        }
     }
 }

@@ -26,13 +26,16 @@ use std::process::ExitCode;
 use clap::Parser;
 use hwasp_experiment::Catalogue;
 
-use args::{Args, Command};
+use args::{Args, Command, LogFormat, LogLevel};
 use failure::Failure;
 
 /// Runs the program: reads its command line, does what it asks for, and says how that went. Experiment files may name what is
 /// in the `catalogue`.
 pub fn run(catalogue: &Catalogue) -> ExitCode {
-    let args = Args::parse();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(answer) => return answered(&answer),
+    };
     log::begin(args.log_format, args.log_level, args.command.quiet());
     match obey(&args.command, catalogue) {
         Ok(()) => ExitCode::SUCCESS,
@@ -41,6 +44,20 @@ pub fn run(catalogue: &Catalogue) -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// Help, the version, or what is wrong with the command line. Errors go where all others do, in the form that is asked for.
+fn answered(answer: &clap::Error) -> ExitCode {
+    let text = answer.render().to_string();
+    if answer.use_stderr() {
+        log::begin(LogFormat::typed(), LogLevel::Info, false);
+        tracing::error!("{}", text.trim_end());
+    } else if let Err(error) = output::print(&text) {
+        log::begin(LogFormat::typed(), LogLevel::Info, false);
+        tracing::error!("error: {error}");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::from(answer.exit_code() as u8)
 }
 
 fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -58,6 +75,7 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::Compare(compare) => commands::compare::run(compare, catalogue),
         Command::Reproduce(reproduce) => commands::reproduce::run(reproduce, catalogue),
         Command::Check(check) => commands::check::run(check, catalogue),
+        Command::Schema(schema) => commands::schema::run(schema, catalogue),
         Command::List => commands::list::run(catalogue),
         Command::Graph(graph) => commands::graph::run(graph, catalogue),
         Command::Init(init) => commands::init::run(init),

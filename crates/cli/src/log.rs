@@ -6,6 +6,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use hwasp_settings::text::printable_lines;
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::filter::{LevelFilter, filter_fn};
 use tracing_subscriber::fmt::format::Writer;
@@ -69,6 +70,11 @@ fn file() -> impl Write {
     LogFile
 }
 
+/// A line of the log, which may quote other people's text, as a terminal may have it. Each comes in one piece.
+fn printed(bytes: &[u8]) -> Vec<u8> {
+    printable_lines(&String::from_utf8_lossy(bytes)).into_bytes()
+}
+
 /// The log of a run, once there is one.
 struct LogFile;
 
@@ -76,7 +82,7 @@ impl Write for LogFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if let Some(file) = FILE.get() {
             // A log that cannot be written stops no training.
-            let _ = file.lock().unwrap_or_else(PoisonError::into_inner).write_all(bytes);
+            let _ = file.lock().unwrap_or_else(PoisonError::into_inner).write_all(&printed(bytes));
         }
         Ok(bytes.len())
     }
@@ -91,7 +97,7 @@ struct Patient<W>(W);
 
 impl<W: Write> Write for Patient<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = self.0.write_all(bytes);
+        let _ = self.0.write_all(&printed(bytes));
         Ok(bytes.len())
     }
 

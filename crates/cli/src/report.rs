@@ -11,6 +11,7 @@ use hwasp_experiment::Experiment;
 use hwasp_export::{ExportFile, Kind};
 use hwasp_runs::text::{grouped, quantity};
 use hwasp_runs::{Replay, Summary};
+use hwasp_training::stats::{Interval, LEAST_VALUES};
 use hwasp_training::{Assembly, Checkpoint, Evaluation, MeanInterval};
 
 /// The line before a training.
@@ -90,10 +91,25 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
     text
 }
 
+/// Under which values of `--set` a run is judged, as a first line; empty where there are none.
+pub(crate) fn under(assignments: &[String]) -> String {
+    let plain = |(key, value): (&str, &str)| format!("{} = {}", key.trim(), value.trim().trim_matches('"'));
+    let set: Vec<String> = assignments.iter().filter_map(|set| set.split_once('=').map(plain)).collect();
+    if set.is_empty() { String::new() } else { format!("  under {}:\n", set.join(", ")) }
+}
+
 /// An evaluation; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
 pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
+    let counted = evaluation.episodes - evaluation.discarded_episodes.min(evaluation.episodes);
     let line = |name: &str, m: &MeanInterval| {
-        format!("  {name:<20} {:>10.2}   95 % interval [{:.2}, {:.2}]\n", m.mean, m.low, m.high)
+        let interval = match m.interval {
+            Some(Interval { low, high }) => format!("95 % interval [{low:.2}, {high:.2}]"),
+            None if counted < LEAST_VALUES as u64 => {
+                format!("no interval: {counted} of the {LEAST_VALUES} episodes that it takes")
+            }
+            None => "no interval: it is the same in all episodes".to_owned(),
+        };
+        format!("  {name:<20} {:>10.2}   {interval}\n", m.mean)
     };
     let mut text = format!(
         "  deterministic policy, {} held-out starts (seed {}), hardware as built:\n",
@@ -148,12 +164,12 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
             let generations = spec.train.env_steps / (popsize as u64 * each);
             format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
         }
-        None => format!(
-            "{} iterations of {} episodes of {} steps",
-            grouped(spec.train.env_steps.div_ceil(spec.train.rows() as u64)),
-            spec.train.episodes_per_iteration,
-            spec.train.episode_steps
-        ),
+        None => {
+            let ((iterations, last), usual) = (assembly.iterations(), spec.train.episodes_per_iteration);
+            let last = if last == usual as u64 { String::new() } else { format!(", the last of {last}") };
+            let steps = spec.train.episode_steps;
+            format!("{} iterations of {usual} episodes of {steps} steps{last}", grouped(iterations))
+        }
     };
     let design = policy.space().names().len();
     format!(
@@ -183,7 +199,7 @@ mod tests {
 
     /// An evaluation whose success was counted by these kinds.
     fn counted(kinds: &[&str]) -> Evaluation {
-        let figure = MeanInterval { mean: 1.0, low: 0.5, high: 1.5 };
+        let figure = MeanInterval { mean: 1.0, interval: Some(Interval { low: 0.5, high: 1.5 }) };
         let rate = |kind: &&str| SuccessRate { kind: (*kind).into(), successes: 3, episodes: 4, low: 0.3, high: 0.95 };
         Evaluation {
             episodes: 4,

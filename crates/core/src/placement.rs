@@ -12,8 +12,21 @@ pub enum Placement {
     Graph,
     /// In the action: HWasP-Minimal. The parameter is sampled at every step, and the plant evaluates the law.
     Action,
-    /// Nowhere: it keeps this value, SI.
+    /// Nowhere: it keeps this value, SI, which lies within the limits.
     Fixed(f64),
+    /// Nowhere: the mechanism was built with this value, SI. Limits are for what is chosen; what came out of a workshop, with its
+    /// errors, may lie outside of them.
+    Built(f64),
+}
+
+impl Placement {
+    /// The value that it keeps, SI, if it keeps one.
+    pub fn kept(self) -> Option<f64> {
+        match self {
+            Self::Fixed(value) | Self::Built(value) => Some(value),
+            Self::Graph | Self::Action => None,
+        }
+    }
 }
 
 /// Why a design cannot be placed so.
@@ -102,7 +115,7 @@ impl ActionDecoder {
             law: law.clone(),
             layout: layout.clone(),
             limits: ports.iter().map(|p| (p.lo, p.hi)).collect(),
-            design: placements.iter().map(|p| if let Placement::Fixed(v) = p { *v } else { 0.0 }).collect(),
+            design: placements.iter().map(|place| place.kept().unwrap_or(0.0)).collect(),
             effort: vec![0.0; law.ports().effort.len()],
             command: vec![0.0; ports.len()],
         }

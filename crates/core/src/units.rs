@@ -102,6 +102,22 @@ pub enum UnitError {
 }
 
 impl Dimension {
+    /// Every one.
+    pub const ALL: [Self; 12] = [
+        Self::None,
+        Self::Length,
+        Self::Speed,
+        Self::Time,
+        Self::Mass,
+        Self::Force,
+        Self::Torque,
+        Self::Angle,
+        Self::AngularSpeed,
+        Self::Stiffness,
+        Self::TorsionalStiffness,
+        Self::Damping,
+    ];
+
     /// The SI symbol, empty for pure numbers.
     pub fn si(self) -> &'static str {
         UNITS.iter().find(|u| u.dimension == self).map_or("", |u| u.symbol)

@@ -30,6 +30,19 @@ fn fixed_values_are_within_their_limits() {
     }
 }
 
+/// A manufacturing error near a limit was simulated smaller than it was printed: what is built was held to the limits of what may
+/// be chosen.
+#[test]
+fn what_is_built_may_lie_outside_of_the_limits() {
+    let built =
+        |value| vec![Placement::Built(2.0), Placement::Built(3.0), Placement::Built(4.0), Placement::Built(value)];
+    for value in [0.5, 9.5] {
+        let policy = common::policy(built(value)).unwrap();
+        assert_eq!(policy.design(&policy.init(0, 1.0)), [2.0, 3.0, 4.0, value]);
+    }
+    assert!(refused(built(f64::NAN)).starts_with("spring[1] fixed at NaN is outside"));
+}
+
 #[test]
 fn law_and_environment_have_the_same_ports() {
     let refused = |change: fn(&mut hwasp_core::EnvSpec)| {

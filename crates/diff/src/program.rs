@@ -39,7 +39,7 @@ pub(crate) enum Slot {
 }
 
 /// One step of a program. The k-th row instruction writes register k.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Instruction {
     Unary(Unary, Slot),
     Binary(Binary, Slot, Slot),
@@ -79,6 +79,18 @@ pub struct Program {
     outputs: Vec<Slot>,
     held: Vec<bool>,
     plan: ReversePlan,
+}
+
+/// Programs are equal if they have the same names and do the same steps with the same constants, bit for bit.
+impl PartialEq for Program {
+    fn eq(&self, other: &Self) -> bool {
+        let names = |p: &Self| [p.uniform_names.clone(), p.column_names.clone(), p.output_names.clone()];
+        let bits = |p: &Self| p.constants.iter().map(|constant| constant.to_bits()).collect::<Vec<_>>();
+        names(self) == names(other)
+            && bits(self) == bits(other)
+            && (&self.uniform_code, &self.row_code) == (&other.uniform_code, &other.row_code)
+            && (&self.outputs, &self.held) == (&other.outputs, &other.held)
+    }
 }
 
 impl Program {

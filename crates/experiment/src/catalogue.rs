@@ -35,8 +35,8 @@ pub struct Catalogue {
     learners: Vec<Arc<dyn LearnerKind>>,
 }
 
-/// Why a problem or a learner cannot be in a catalogue.
-#[derive(Debug, Error)]
+/// Why a problem or a learner cannot be in a catalogue. Its `Debug` is its message, so that `main` may return it.
+#[derive(Error)]
 pub enum CatalogueError {
     /// A name that cannot be written into an experiment, or means something else there.
     #[error("{what} `{name}`: {why}; name it in lower-case letters, digits and hyphens, as no other is named")]
@@ -66,6 +66,12 @@ pub enum CatalogueError {
         /// What is wrong.
         source: AnyError,
     },
+}
+
+impl std::fmt::Debug for CatalogueError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
 }
 
 impl Catalogue {

@@ -1,6 +1,6 @@
 //! `[design]`: where each design parameter sits and where it begins.
 
-use hwasp_settings::{Fields, Item, Settings};
+use hwasp_settings::{Fields, Item, Kind, Settings};
 
 use crate::group::{Group, Place};
 use crate::initial::{InitialDesign, read_initial};
@@ -68,7 +68,12 @@ impl Settings for DesignSettings {
                      one for each group, `{ thumb_distal_radius = \"6 mm\" }`; groups left out begin in the middle";
         fields
             .default("\"law\", or \"logit\" where `logit_half_width` is set")
-            .limits("inside of the parameter's limits");
+            .limits("inside of the parameter's limits")
+            .kind(Kind::AnyOf(vec![
+                Kind::Choice(vec!["law", "logit", "middle"]),
+                Kind::AnyQuantity,
+                Kind::Table(Box::new(Kind::AnyQuantity)),
+            ]));
         let (initial, groups) = (&mut self.initial, &self.groups);
         fields.open("initial", about, Some(initial.item()), |section, node| {
             *initial = read_initial(section, node, groups);
@@ -79,15 +84,15 @@ impl Settings for DesignSettings {
         fields.number("learning_rate_scale", &mut self.learning_rate_scale, 0.0..=1000.0, about);
         let about = "where some of them sit: `{ \"stiffness[0]\" = \"action\", \"stiffness[3..5]\" = \"fixed\" }` (3 and 4), or a list of \
                      one place each";
-        fields.default("none").limits(listed_places());
+        let place = Kind::Choice(Place::ALL.iter().map(|(name, _)| *name).collect());
+        fields.default("none").limits(place.limits()).kind(Kind::AnyOf(vec![
+            Kind::Table(Box::new(place.clone())),
+            Kind::List { of: Box::new(place), length: [1, usize::MAX], single: false },
+        ]));
         let placements = &mut self.placements;
         let item = (!placements.is_empty()).then(|| Item::Keys(write_placements(placements)));
         fields.open("placements", about, item, |section, node| {
             *placements = read_placements(section, node, groups);
         });
     }
-}
-
-fn listed_places() -> String {
-    Place::ALL.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }

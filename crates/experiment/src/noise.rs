@@ -1,7 +1,7 @@
 //! `[noise]`: standard deviations of the Gaussian that explores.
 
 use hwasp_core::{Dimension, parse_quantity};
-use hwasp_settings::{Fields, Item, Node, Section, Settings, with_unit};
+use hwasp_settings::{Fields, Item, Kind, Node, Section, Settings, with_unit};
 
 use crate::design::DesignSettings;
 use crate::task::Task;
@@ -79,10 +79,11 @@ impl NoiseSettings {
         fields
             .default("\"3 N\"; a torque: \"0.5 N·m\", else 0.1 in SI; grasps: \"0.02 N·m\"")
             .limits("1e-6 to 1e4")
+            .kind(Kind::Optional(Box::new(Kind::AnyQuantity)))
             .open("effort", "of the effort, where a parameter sits in the graph", written(*effort), |section, node| {
                 read(effort, "effort", example, section, node);
             });
-        fields.limits("as above").open(
+        fields.limits("as above").kind(Kind::Optional(Box::new(Kind::AnyQuantity))).open(
             "effort_final",
             "annealed geometrically to this",
             written(*last),
@@ -105,7 +106,9 @@ impl Settings for NoiseSettings {
         fields.number("design", &mut self.design, FRACTION, "of a parameter in the action, as a fraction of its range");
         let last = self.design_final.map(Item::Float);
         let design_final = &mut self.design_final;
-        fields.limits("as above").open("design_final", "annealed geometrically to this", last, |section, node| {
+        let fraction = Kind::Number([*FRACTION.start(), *FRACTION.end()]);
+        fields.limits("as above").kind(Kind::Optional(Box::new(fraction)));
+        fields.open("design_final", "annealed geometrically to this", last, |section, node| {
             *design_final = match node.text() {
                 Some("none") => None,
                 _ => section.checked_number_of("design_final", node, &FRACTION),

@@ -32,7 +32,7 @@ fn top() -> Vec<Field> {
     let methods: Vec<&str> = Method::ALL.iter().map(|(name, _)| *name).collect();
     let listed = methods.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     vec![
-        field("name", Kind::Text(LONGEST_NAME), ["required", "1 to 100 characters"], "what plots and folders call it"),
+        field("name", Kind::Line(LONGEST_NAME), ["required", "1 to 100 characters"], "what plots and folders call it"),
         field("description", Kind::Text(LONGEST_DESCRIPTION), ["\"\"", "up to 2000 characters"], "what it is"),
         field("method", Kind::Choice(methods), ["\"hwasp\"", &listed], "how learner, policy and hardware are composed"),
         field("seed", Kind::Integer([0, i64::MAX as u64]), ["0", "0 to 2^63 - 1"], "root of all random streams"),
@@ -43,8 +43,9 @@ fn top() -> Vec<Field> {
 fn common(catalogue: &Catalogue) -> Vec<Field> {
     let listed = catalogue.problems().iter().map(|p| format!("`{}`", p.name())).collect::<Vec<_>>().join(", ");
     let horizon = Kind::Integer([1, MOST_STEPS as u64]);
+    let names = catalogue.problems().iter().map(|problem| problem.name().to_owned()).collect();
     vec![
-        field("problem", Kind::Open, ["required", &listed], "what is to be solved"),
+        field("problem", Kind::Names(names), ["required", &listed], "what is to be solved"),
         field("horizon", horizon, ["as the problem says", "1 to 100 000"], "steps of an episode"),
     ]
 }
@@ -52,11 +53,9 @@ fn common(catalogue: &Catalogue) -> Vec<Field> {
 /// Every table beside `[task]`, in the order in which it is written.
 fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     let learners = LearnerSettings::new(catalogue.learners(), ROWS);
-    let names: Vec<&'static str> = Vec::new();
-    let mut algorithm = field("algorithm", Kind::Choice(names), ["", ""], "what improves the policy");
-    algorithm.kind = Kind::Open;
-    algorithm.default = format!("\"{}\"", learners.algorithm());
-    algorithm.limits = learners.listed();
+    let names: Vec<String> = learners.names().map(str::to_owned).collect();
+    let default = format!("\"{}\"", learners.algorithm());
+    let algorithm = field("algorithm", Kind::Names(names), [&default, &learners.listed()], "what improves the policy");
     let train = TrainSettings::new(1000, true);
     let mut tables = vec![
         ("controller".to_owned(), described(&mut ControllerSettings::new(0))),
@@ -75,71 +74,88 @@ fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     tables
 }
 
+/// What a table is for, where its name does not say it.
+fn purpose(table: &str) -> &'static str {
+    match table {
+        "design" => "Where each design parameter sits and begins: [hardware.md](hardware.md) says what the places do.",
+        "noise" => "The Gaussian noise by which training explores.",
+        "learner" => {
+            "What the methods `hwasp`, `minimal` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`."
+        }
+        "baseline" => "What estimates values beside the learner.",
+        "search" => "For the methods `cmaes`, `ars`, `cmaes-rl` and `ars-rl`.",
+        "cmaes" => "For the methods `cmaes` and `cmaes-rl`.",
+        "ars" => "For the methods `ars` and `ars-rl`.",
+        "train" => "How long, in which portions, and how the result is judged.",
+        _ => "",
+    }
+}
+
 /// The reference of all keys as Markdown: a table for each table of an experiment.
 pub fn reference(catalogue: &Catalogue) -> String {
-    let mut text = String::new();
-    let mut section = |heading: &str, fields: &[Field]| {
-        let _ = write!(text, "{heading}\n\n| key | default | meaning | limits |\n|---|---|---|---|\n");
-        for field in fields {
-            let _ = writeln!(text, "{}", field.row());
-        }
-        text.push('\n');
-    };
-    section("At the top:", &top());
-    section("### `[task]`", &common(catalogue));
-    // Problems that have the same settings share a table.
-    let mut problems: Vec<(Vec<&str>, Vec<Field>)> = Vec::new();
-    for problem in catalogue.problems() {
-        let fields = described(&mut *problem.defaults());
-        let keys = |fields: &[Field]| fields.iter().map(|field| field.key.clone()).collect::<Vec<_>>();
-        match problems.iter_mut().find(|(_, known)| keys(known) == keys(&fields) && !fields.is_empty()) {
-            Some((names, known)) => {
-                for (known, field) in
-                    known.iter_mut().zip(&fields).filter(|(known, field)| known.default != field.default)
-                {
-                    known.default = format!("{} ({}: {})", known.default, problem.name(), field.default);
-                }
-                names.push(problem.name());
-            }
-            None => problems.push((vec![problem.name()], fields)),
-        }
-    }
-    for (names, fields) in &problems {
-        let names = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
+    let mut text = section("At the top:", &top());
+    text.push_str(&section("### `[task]`", &common(catalogue)));
+    for (problems, fields) in by_settings(catalogue) {
+        let names = problems.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
         if fields.is_empty() {
-            section(&format!("For {names} there is nothing more to set."), &[]);
+            let _ = writeln!(text, "For {names} there is nothing more to set.\n");
         } else {
-            section(&format!("For {names}:"), fields);
+            text.push_str(&section(&format!("For {names}:"), &fields));
         }
     }
     for (name, fields) in tables(catalogue) {
-        section(&format!("### `[{name}]`"), &fields);
+        text.push_str(&section(format!("### `[{name}]`\n\n{}", purpose(&name)).trim_end(), &fields));
     }
-    // A table of nothing is no table.
-    text.replace(
-        " there is nothing more to set.\n\n| key | default | meaning | limits |\n|---|---|---|---|\n",
-        " there is nothing more to set.\n",
-    )
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
 }
 
-/// The JSON Schema of experiment files: editors complete and check them by it.
+/// One table of the reference below its heading.
+fn section(heading: &str, fields: &[Field]) -> String {
+    let mut text = format!("{heading}\n\n| key | default | meaning | limits |\n|---|---|---|---|\n");
+    for field in fields {
+        let _ = writeln!(text, "{}", field.row());
+    }
+    text.push('\n');
+    text
+}
+
+/// The settings of every problem; problems that have the same ones share them, each default with the name of its problem.
+fn by_settings(catalogue: &Catalogue) -> Vec<(Vec<&str>, Vec<Field>)> {
+    let keys = |fields: &[Field]| fields.iter().map(|field| field.key.clone()).collect::<Vec<_>>();
+    let mut all: Vec<(Vec<&str>, Vec<Field>)> = Vec::new();
+    for problem in catalogue.problems() {
+        let fields = described(&mut *problem.defaults());
+        let Some((names, known)) = all.iter_mut().find(|(_, known)| keys(known) == keys(&fields) && !fields.is_empty())
+        else {
+            all.push((vec![problem.name()], fields));
+            continue;
+        };
+        for (known, field) in known.iter_mut().zip(&fields).filter(|(known, field)| known.default != field.default) {
+            known.default = format!("{} ({}: {})", known.default, problem.name(), field.default);
+        }
+        names.push(problem.name());
+    }
+    all
+}
+
+/// The JSON Schema of experiment files (draft 7): editors complete and check them by it.
 pub fn schema(catalogue: &Catalogue) -> Value {
     let mut tables: Map<String, Value> =
         tables(catalogue).into_iter().map(|(name, fields)| (name, object_schema(&fields))).collect();
-    let learners: Vec<&str> = catalogue.learners().iter().map(|learner| learner.name()).collect();
-    if let Some(algorithm) = tables.get_mut("learner").and_then(|table| table.pointer_mut("/properties/algorithm")) {
-        algorithm["enum"] = json!(learners);
-    }
     tables.insert("task".to_owned(), task_schema(catalogue));
-    let methods: Map<String, Value> = Method::ALL
-        .iter()
-        .map(|(name, _)| {
-            let overlay = json!({ "type": "object", "additionalProperties": false, "properties": tables.clone() });
-            ((*name).to_owned(), overlay)
-        })
-        .collect();
+    // Each table stands once, and is named wherever a file may have it: at the top and below every method.
+    let named: Map<String, Value> =
+        tables.keys().map(|name| (name.clone(), json!({ "$ref": format!("#/definitions/{name}") }))).collect();
+    let overlay = json!({ "type": "object", "additionalProperties": false, "properties": named });
+    let methods: Map<String, Value> =
+        Method::ALL.iter().map(|(name, _)| ((*name).to_owned(), json!({ "$ref": "#/definitions/method" }))).collect();
     let mut properties: Map<String, Value> = top().iter().map(|field| (field.key.clone(), field.schema())).collect();
-    properties.extend(tables);
+    properties["name"]["minLength"] = json!(1);
+    properties.extend(named);
+    // A file says which problem it is about; what a method changes need not.
+    properties["task"] = json!({ "allOf": [{ "$ref": "#/definitions/task" }, { "required": ["problem"] }] });
     properties.insert(
         "methods".to_owned(),
         json!({
@@ -149,32 +165,47 @@ pub fn schema(catalogue: &Catalogue) -> Value {
             "properties": methods,
         }),
     );
+    let mut definitions = tables;
+    definitions.insert("method".to_owned(), overlay);
     json!({
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "hwasp experiment",
         "type": "object",
         "required": ["name", "task"],
         "additionalProperties": false,
         "properties": properties,
+        "definitions": definitions,
     })
 }
 
 /// `[task]`: the keys of all problems, and for each problem which of them it has.
 fn task_schema(catalogue: &Catalogue) -> Value {
-    let names: Vec<&str> = catalogue.problems().iter().map(|problem| problem.name()).collect();
     let mut rules = Vec::new();
-    let mut all = Map::new();
+    let mut all: Vec<(String, Vec<Value>)> = Vec::new();
     for problem in catalogue.problems() {
         let fields: Vec<Field> = common(catalogue).into_iter().chain(described(&mut *problem.defaults())).collect();
-        let own = object_schema(&fields);
         for field in &fields {
-            all.entry(field.key.clone()).or_insert_with(|| json!({}));
+            let schema = field.schema();
+            match all.iter_mut().find(|(key, _)| *key == field.key) {
+                Some((_, known)) if known.contains(&schema) => {}
+                Some((_, known)) => known.push(schema),
+                None => all.push((field.key.clone(), vec![schema])),
+            }
         }
+        let own: Vec<String> = fields.iter().map(|field| field.key.clone()).collect();
+        let own_schemas = object_schema(&fields);
         rules.push(json!({
             "if": { "properties": { "problem": { "const": problem.name() } }, "required": ["problem"] },
-            "then": own,
+            "then": { "propertyNames": { "enum": own }, "properties": own_schemas["properties"] },
         }));
     }
-    all.insert("problem".to_owned(), json!({ "enum": names, "description": "what is to be solved" }));
-    json!({ "type": "object", "properties": all, "allOf": rules })
+    // Without a problem, as below a method, a key may be that of any.
+    let properties: Map<String, Value> = all
+        .into_iter()
+        .map(|(key, mut schemas)| {
+            let schema = if schemas.len() == 1 { schemas.remove(0) } else { json!({ "anyOf": schemas }) };
+            (key, schema)
+        })
+        .collect();
+    json!({ "type": "object", "additionalProperties": false, "properties": properties, "allOf": rules })
 }

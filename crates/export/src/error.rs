@@ -6,6 +6,7 @@ use hwasp_core::RolloutError;
 use hwasp_runs::RunError;
 use hwasp_tasks::hand::HandError;
 use hwasp_training::AssembleError;
+use hwasp_workshop::parts::ChosenPartsError;
 use thiserror::Error;
 
 /// Why there is no export.
@@ -36,6 +37,9 @@ pub enum ExportError {
     /// A hand that cannot be built.
     #[error(transparent)]
     Hand(#[from] HandError),
+    /// A hand whose parts are not known.
+    #[error(transparent)]
+    Parts(#[from] ChosenPartsError),
     /// Something else is where a file should go.
     #[error("{path} exists already, no export wrote it, and it is not overwritten; name another folder with --out")]
     Foreign {

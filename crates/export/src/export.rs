@@ -45,7 +45,7 @@ fn files_of(kind: Kind, source: &Source) -> Result<Vec<ExportFile>, ExportError>
         Kind::Json => source.with_contract(|deployed, contract| Ok(vec![controller::json(deployed, contract)?])),
         Kind::Mjcf => Ok(source.mechanism(kind)?.mjcf()?),
         Kind::Urdf => Ok(source.mechanism(kind)?.urdf()?),
-        Kind::Stl => Ok(source.mechanism(kind)?.stl()?),
-        Kind::Scad => Ok(source.mechanism(kind)?.scad()?),
+        Kind::Stl => Ok(source.mechanism(kind)?.stl(source.chosen(kind)?)?),
+        Kind::Scad => Ok(source.mechanism(kind)?.scad(source.chosen(kind)?)?),
     }
 }

@@ -1,15 +1,17 @@
 //! The mechanism of a hand with the design of a run: as a simulation, as links and joints, and as parts to print.
 //!
-//! Of a finished run `experiment.toml` and `design.toml` are enough; neither the engine nor the policy is asked.
+//! Of a finished run `experiment.toml` and `design.toml` are enough; neither the engine nor the policy is asked. What is simulated
+//! is the design as it was trained; what is printed is the design that its parts make.
 
-use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, HandError, MjcfOptions, Stock, mjcf, parts, scad, urdf};
+use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, HandError, MjcfOptions, mjcf, parts, scad, urdf};
+use hwasp_workshop::parts::ChosenParts;
 
 use crate::file::ExportFile;
 
 /// A hand and its design, SI.
 pub(super) struct Mechanism {
-    hand: HandDescription,
-    design: [f64; DESIGN_LEN],
+    pub(super) hand: HandDescription,
+    pub(super) design: [f64; DESIGN_LEN],
 }
 
 impl Mechanism {
@@ -29,9 +31,9 @@ impl Mechanism {
         Ok(vec![text("hand.urdf", urdf(&self.hand, &self.design)?)])
     }
 
-    /// The parts.
-    pub(super) fn stl(&self) -> Result<Vec<ExportFile>, HandError> {
-        let parts = parts(&self.hand, &self.design, &Stock::default())?;
+    /// What is printed about the parts that were chosen.
+    pub(super) fn stl(&self, chosen: &ChosenParts) -> Result<Vec<ExportFile>, HandError> {
+        let parts = parts(&self.hand, &chosen.design(), &chosen.springs(), &chosen.workshop)?;
         let file = |part: hwasp_tasks::hand::Part| ExportFile {
             name: format!("{}.stl", part.name),
             contents: part.mesh.stl(part.name),
@@ -39,9 +41,9 @@ impl Mechanism {
         Ok(parts.into_iter().map(file).collect())
     }
 
-    /// The parts with their parameters.
-    pub(super) fn scad(&self) -> Result<Vec<ExportFile>, HandError> {
-        Ok(vec![text("hand.scad", scad(&self.hand, &self.design, &Stock::default())?)])
+    /// The same with its parameters.
+    pub(super) fn scad(&self, chosen: &ChosenParts) -> Result<Vec<ExportFile>, HandError> {
+        Ok(vec![text("hand.scad", scad(&self.hand, &chosen.design(), &chosen.springs(), &chosen.workshop)?)])
     }
 }
 

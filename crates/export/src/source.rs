@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use hwasp_experiment::{Catalogue, Experiment};
 use hwasp_runs::{DESIGN, RunError, SavedRun, saved_experiment};
 use hwasp_workshop::design::{DesignReport, hand_of};
+use hwasp_workshop::parts::ChosenParts;
 
 use crate::contract::Contract;
 use crate::deployed::Deployed;
@@ -20,12 +21,14 @@ pub struct Source {
     path: PathBuf,
     spec: Experiment,
     deployed: OnceCell<Deployed>,
+    chosen: OnceCell<ChosenParts>,
 }
 
 impl Source {
     /// Opens a run folder.
     pub fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
-        Ok(Self { path: path.to_owned(), spec: saved_experiment(path, &[], catalogue)?, deployed: OnceCell::new() })
+        let (path, spec) = (path.to_owned(), saved_experiment(path, &[], catalogue)?);
+        Ok(Self { path, spec, deployed: OnceCell::new(), chosen: OnceCell::new() })
     }
 
     /// Its experiment.
@@ -54,6 +57,21 @@ impl Source {
         let mut files = make(deployed, &contract)?;
         files.push(contract.file()?);
         Ok(files)
+    }
+
+    /// The parts that print files were made for, once any were.
+    pub fn printed_for(&self) -> Option<&ChosenParts> {
+        self.chosen.get()
+    }
+
+    /// The parts of the mechanism, to be written as `kind`: the run's list where there is one.
+    pub(crate) fn chosen(&self, kind: Kind) -> Result<&ChosenParts, ExportError> {
+        if let Some(chosen) = self.chosen.get() {
+            return Ok(chosen);
+        }
+        let Mechanism { hand, design } = self.mechanism(kind)?;
+        let chosen = ChosenParts::of_run(&self.path, &self.spec, &hand, &design)?;
+        Ok(self.chosen.get_or_init(|| chosen))
     }
 
     /// The mechanism, to be written as `kind`.

@@ -37,7 +37,7 @@ pub fn closing_panels(points: &[ClosingPoint], tension_limit: f64) -> PanelPlots
 }
 
 fn entries() -> [Entry<'static>; 3] {
-    let entry = |place, label| Entry { place, label, runs: 1 };
+    let entry = |place, label| Entry { place, label, runs: 1, asked: 1 };
     [entry(THUMB, "thumb"), entry(FINGER, "each finger"), entry(ALL, "the three tendons together")]
 }
 

@@ -69,9 +69,14 @@ impl<'r> Drawn<'r> {
                 shapes.collect::<Result<_, _>>()?,
             ));
         }
-        let entry =
-            |(place, group): (usize, &Vec<&'r Curve>)| draw::Entry { place, label: &group[0].label, runs: group.len() };
-        let explanation = draw::explanation(&panels, options);
+        let asked = |label: &str| options.asked.iter().find(|(of, _)| of == label).map(|(_, runs)| *runs);
+        let entry = |(place, group): (usize, &Vec<&'r Curve>)| {
+            let (label, runs) = (group[0].label.as_str(), group.len());
+            draw::Entry { place, label, runs, asked: asked(label).unwrap_or(runs) }
+        };
+        let missing = options.asked.iter().map(|(label, _)| label.as_str());
+        let missing: Vec<&str> = missing.filter(|label| groups.iter().all(|group| group[0].label != *label)).collect();
+        let explanation = draw::explanation(&panels, options, &missing);
         Ok(Self { panels, entries: groups.iter().enumerate().map(entry).collect(), explanation, notes })
     }
 }

@@ -1,5 +1,7 @@
 //! The page: title, legend, panels side by side, and a line that says what the strokes mean.
 
+use hwasp_training::stats::LEAST_VALUES;
+
 use crate::options::{Band, PlotOptions};
 use crate::panel::{AREA, GREY, INK, MARGINS, OPTIMUM, Panel, Site, colour, left_margin, stroke};
 use crate::picture::PanelPlot;
@@ -12,6 +14,8 @@ pub(super) struct Entry<'a> {
     pub(super) place: usize,
     pub(super) label: &'a str,
     pub(super) runs: usize,
+    /// How many there should be.
+    pub(super) asked: usize,
 }
 
 /// The texts around the panels.
@@ -120,7 +124,20 @@ impl Rows {
 }
 
 /// What lines and bands mean, for whoever meets the picture without its text.
-pub(super) fn explanation(panels: &[Panel], options: &PlotOptions) -> String {
+/// `missing`: labels without a single run.
+pub(super) fn explanation(panels: &[Panel], options: &PlotOptions, missing: &[&str]) -> String {
+    let mut parts = vec![strokes(panels, options)];
+    if options.band == Band::Bootstrap && panels.iter().any(Panel::has_separate) {
+        parts.push(format!("fewer than {LEAST_VALUES} runs of a label carry no interval and are drawn one by one"));
+    }
+    if !missing.is_empty() {
+        parts.push(format!("no run finished of {}", missing.join(", ")));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join("; ")
+}
+
+fn strokes(panels: &[Panel], options: &PlotOptions) -> String {
     let window = options.window;
     let single = match window {
         1 => String::new(),
@@ -161,8 +178,13 @@ impl Legend {
     fn lay_out(panels: &[Panel], entries: &[Entry<'_>], reference: &str, reach: f64) -> Self {
         let mut texts: Vec<(Swatch, String)> = Vec::new();
         for entry in entries {
-            let (place, band, runs) = (entry.place, entry.runs > 1, entry.runs);
-            let suffix = if band { format!(" ({runs} runs)") } else { String::new() };
+            let (place, runs, asked) = (entry.place, entry.runs, entry.asked);
+            let suffix = match runs {
+                _ if asked > runs => format!(" ({runs} of {asked} runs)"),
+                0 | 1 => String::new(),
+                _ => format!(" ({runs} runs)"),
+            };
+            let band = panels.iter().any(|panel| panel.summarises(place));
             let room = (reach - SWATCH - 8.0 - text_width(&suffix, LEGEND_SIZE)).min(420.0);
             let text = format!("{}{suffix}", cut(entry.label, LEGEND_SIZE, room));
             texts.push((Swatch::Label { place, band }, text));

@@ -1,5 +1,7 @@
 //! Figures with their intervals, one below the other.
 
+use hwasp_training::stats::Interval;
+
 use crate::axis::Axis;
 use crate::panel::{FRAME, GREY, GRID_LINE, INK, colour};
 use crate::series::LARGEST;
@@ -14,10 +16,8 @@ pub struct IntervalRow<'a> {
     pub value: f64,
     /// How it is told.
     pub text: String,
-    /// The lower end of its interval.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
+    /// Its interval, if it has one.
+    pub interval: Option<Interval>,
     /// What it was computed from, as dots; may be empty.
     pub points: &'a [f64],
 }
@@ -32,7 +32,8 @@ const RIGHT: f64 = 68.0;
 /// Draws rows over one axis, on which there is nothing above `most`.
 pub fn intervals(rows: &[IntervalRow<'_>], axis_text: &str, most: f64) -> String {
     let drawable = |value: &f64| value.abs() <= LARGEST;
-    let all = rows.iter().flat_map(|row| [row.value, row.low, row.high].into_iter().chain(row.points.iter().copied()));
+    let ends = |row: &IntervalRow<'_>| row.interval.map_or([row.value; 2], |interval| [interval.low, interval.high]);
+    let all = rows.iter().flat_map(|row| ends(row).into_iter().chain([row.value]).chain(row.points.iter().copied()));
     let (low, high) = all.filter(drawable).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let mut axis = if low <= high { Axis::of_values(low, high) } else { Axis::of_values(0.0, 1.0) };
     axis.high = axis.high.min(most);
@@ -50,7 +51,9 @@ pub fn intervals(rows: &[IntervalRow<'_>], axis_text: &str, most: f64) -> String
         let y = TOP + ROW * (i as f64 + 0.5);
         svg.text((left - 10.0, y + 4.0), LABEL_SIZE, Anchor::End, INK, row.label);
         let stroke = format!("stroke=\"{}\" stroke-width=\"2.2\" stroke-linecap=\"round\"", colour(0));
-        svg.line((x(row.low), y), (x(row.high), y), &stroke);
+        if let Some(Interval { low, high }) = row.interval {
+            svg.line((x(low), y), (x(high), y), &stroke);
+        }
         for &point in row.points.iter().filter(|point| drawable(point)) {
             svg.dot((x(point), y + 7.0), 2.2, &format!("fill=\"{GREY}\" fill-opacity=\"0.7\""));
         }

@@ -22,7 +22,7 @@ pub enum Band {
     /// The smallest to the largest run.
     #[default]
     MinMax,
-    /// The 95 % bootstrap interval of the interquartile mean.
+    /// The 95 % bootstrap interval of the interquartile mean. Up to three runs carry none and are drawn one by one.
     Bootstrap,
 }
 
@@ -35,6 +35,7 @@ pub enum Band {
 /// | `window` | 11 | rows in the trailing mean of the return | 1 to 1001 |
 /// | `band` | `MinMax` | the band around several runs | - |
 /// | `panels` | none | axis texts and optima by column; a column without gets its own name | - |
+/// | `asked` | none | labels with the runs that there should be, where some did not finish | - |
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlotOptions {
     /// The line above everything; empty for none.
@@ -47,10 +48,19 @@ pub struct PlotOptions {
     pub band: Band,
     /// Axis texts and optima by column.
     pub panels: Vec<PanelText>,
+    /// Labels with the runs that there should be. The legend says `1 of 5 runs` where there are fewer.
+    pub asked: Vec<(String, usize)>,
 }
 
 impl Default for PlotOptions {
     fn default() -> Self {
-        Self { title: String::new(), x_axis: XAxis::EnvSteps, window: 11, band: Band::MinMax, panels: Vec::new() }
+        Self {
+            title: String::new(),
+            x_axis: XAxis::EnvSteps,
+            window: 11,
+            band: Band::MinMax,
+            panels: Vec::new(),
+            asked: Vec::new(),
+        }
     }
 }

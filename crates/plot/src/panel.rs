@@ -110,6 +110,16 @@ impl Panel {
         self.shapes.iter().flatten().any(|shape| matches!(shape, Shape::Single(_)))
     }
 
+    /// Whether several runs of a label are drawn one by one.
+    pub(super) fn has_separate(&self) -> bool {
+        self.shapes.iter().flatten().any(|shape| matches!(shape, Shape::Separate(_)))
+    }
+
+    /// Whether the label at this place has a band.
+    pub(super) fn summarises(&self, place: usize) -> bool {
+        matches!(self.shapes.get(place), Some(Some(Shape::Summary { .. })))
+    }
+
     /// Draws the panel.
     pub(super) fn draw(&self, svg: &mut Svg, site: Site) {
         let (x, values) = &self.axes;

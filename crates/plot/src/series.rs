@@ -1,7 +1,7 @@
 //! From the rows of runs to what is drawn: bad rows left out, smoothed, runs of one label brought to one grid.
 
 use hwasp_core::Stream;
-use hwasp_training::stats::{Bootstrap, Interval, Sample, StatsError};
+use hwasp_training::stats::{Bootstrap, Interval, LEAST_VALUES, Sample, StatsError};
 use rand::SeedableRng;
 
 use crate::curve::{Curve, RETURN};
@@ -36,7 +36,7 @@ pub(super) enum Shape {
     Single(Line),
     /// Interquartile mean and a band (steps, low, high) over several runs.
     Summary { centre: Vec<Point>, band: Vec<(f64, f64, f64)> },
-    /// Several runs that have no common range of steps.
+    /// Several runs that have no common range of steps, or are too few for the band that is asked for.
     Separate(Vec<Line>),
 }
 
@@ -75,7 +75,12 @@ pub enum Note {
         /// How many rows.
         rows: usize,
     },
-    /// A run without any row that can be drawn.
+    /// A run without any row: it has no curve.
+    Empty {
+        /// The run's label.
+        label: String,
+    },
+    /// A run without any row of a column that can be drawn.
     NoRows {
         /// The run's label.
         label: String,
@@ -108,6 +113,7 @@ impl std::fmt::Display for Note {
             Self::Skipped { label, series, rows } => {
                 write!(f, "{label}: {series} is drawn without {rows} of its rows (not finite, or out of order)")
             }
+            Self::Empty { label } => write!(f, "{label}: the run has no iteration yet, and so no curve"),
             Self::NoRows { label, series } => write!(f, "{label}: no row of {series} can be drawn"),
             Self::Shortened { label, series, shown, longest } => write!(
                 f,
@@ -138,6 +144,14 @@ pub(super) fn shape(
         }
         let raw = drawable(&run.x, values);
         let rows = values.len() - raw.len();
+        if values.is_empty() {
+            // Once, however many panels there are.
+            let empty = Note::Empty { label };
+            if !notes.contains(&empty) {
+                notes.push(empty);
+            }
+            continue;
+        }
         if raw.is_empty() {
             notes.push(Note::NoRows { label, series });
             continue;
@@ -175,6 +189,10 @@ fn combine(
         notes.push(Note::Apart { label, series });
         return Ok(Shape::Separate(lines));
     }
+    // Up to three runs carry no interval: they stand for themselves.
+    if band == Band::Bootstrap && lines.len() < LEAST_VALUES {
+        return Ok(Shape::Separate(lines));
+    }
     if longest > to {
         notes.push(Note::Shortened { label, series, shown: to, longest });
     }
@@ -183,11 +201,14 @@ fn combine(
         let step = from + (to - from) * (place as f64 / (GRID - 1) as f64);
         let values: Vec<f64> = lines.iter().map(|line| interpolate(&line.smooth, step)).collect();
         let sample = Sample::new(&values)?;
+        let extremes = Interval { low: sample.min(), high: sample.max() };
         let Interval { low, high } = match band {
-            Band::MinMax => Interval { low: sample.min(), high: sample.max() },
+            Band::MinMax => extremes,
             Band::Bootstrap => {
                 let mut stream = Stream::from_seed(RESAMPLES);
-                Bootstrap::default().interval(&sample, Sample::interquartile_mean, &mut stream)?
+                let interval = Bootstrap::default().interval(&sample, Sample::interquartile_mean, &mut stream)?;
+                // Where all runs are at the same place, so is the band.
+                interval.unwrap_or(extremes)
             }
         };
         centre.push((step, sample.interquartile_mean()));

@@ -1,5 +1,6 @@
 //! The tornado chart of a design's tolerances: for each parameter, what return and success change where it is off.
 
+use hwasp_training::stats::Interval;
 use hwasp_training::{Change, MeanInterval};
 
 use crate::axis::Axis;
@@ -39,8 +40,7 @@ struct Column {
 
 /// Changes in percentage points.
 fn success(change: &Change) -> Option<MeanInterval> {
-    let MeanInterval { mean, low, high } = change.success?;
-    Some(MeanInterval { mean: 100.0 * mean, low: 100.0 * low, high: 100.0 * high })
+    Some(change.success?.scaled(100.0))
 }
 
 /// Draws rows in their order, the costliest on top; each change is over so many `episodes`.
@@ -91,7 +91,8 @@ fn explanation(parameters: usize, episodes: u64) -> String {
 impl Column {
     fn draw(&self, svg: &mut Svg, rows: &[TornadoRow<'_>], left: f64, bottom: f64) {
         let sides = |row: &TornadoRow<'_>| row.sides.map(self.change);
-        let ends = rows.iter().flat_map(sides).flatten().flat_map(|m| [m.low, m.high]);
+        let ends =
+            rows.iter().flat_map(sides).flatten().flat_map(|m| m.interval.map_or([m.mean; 2], |i| [i.low, i.high]));
         let (low, high) = ends.fold((0f64, 0f64), |(low, high), end| (low.min(end), high.max(end)));
         let axis = Axis::of_values(low, high);
         let at = |value: f64| left + axis.share(value) * COLUMN.0;
@@ -103,10 +104,11 @@ impl Column {
         for (i, row) in rows.iter().enumerate() {
             let middle = TOP + ROW.0 * (i as f64 + 0.5);
             for (place, change) in sides(row).into_iter().enumerate() {
-                let Some(MeanInterval { mean, low, high }) = change else { continue };
+                let Some(MeanInterval { mean, interval }) = change else { continue };
                 let top = middle + ROW.1 * (place as f64 - 1.0);
                 let (from, to) = (at(mean.min(0.0)), at(mean.max(0.0)));
                 svg.rectangle((from, top), (to - from, ROW.1), &fill(place));
+                let Some(Interval { low, high }) = interval else { continue };
                 let y = top + 0.5 * ROW.1;
                 svg.line((at(low), y), (at(high), y), WHISKER);
                 for end in [low, high] {

@@ -8,9 +8,9 @@
 //! use hwasp_core::Dimension;
 //! use hwasp_problem::{AnyError, Built, Problem};
 //! use hwasp_settings::{Fields, Settings};
-//! # use hwasp_core::{DesignSpace, Hardware, Law, MakeEnvironment, Ports};
-//! # fn law() -> Result<Law, AnyError> { Err("".into()) }
-//! # fn environments(_: f64) -> Box<dyn MakeEnvironment> { Box::new(|_| unreachable!()) }
+//! # use hwasp_core::{Law, MakeEnvironment};
+//! # fn law() -> Result<Law, AnyError> { Err("not in this example".into()) }
+//! # fn environments(_: f64) -> impl MakeEnvironment { |_| unreachable!() }
 //!
 //! /// A lamp on an arm that a spring should carry.
 //! struct Lamp;

@@ -36,8 +36,10 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
         let label = label + &words::spaced(&group.name);
         figures.push(figure(&label, shown.with_unit(group.group.total_as_built), best));
     }
-    let interval = format!("95 % interval {}", mean_interval(&evaluation.discounted_return, 1));
-    figures.push(figure("Discounted return", decimal(evaluation.discounted_return.mean, 1), interval));
+    let discounted = &evaluation.discounted_return;
+    let of = if discounted.interval.is_some() { "95 % interval " } else { "" };
+    let interval = format!("{of}{}", mean_interval(discounted, 1));
+    figures.push(figure("Discounted return", decimal(discounted.mean, 1), interval));
     let parameters: usize = run.design.groups.iter().map(|group| group.position.len()).sum();
     let of = if parameters == 1 { "number of the body" } else { "numbers of the body" };
     figures.push(figure("Designed", parameters.to_string(), of.into()));

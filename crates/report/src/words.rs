@@ -1,5 +1,6 @@
 //! Figures as a reader of prose likes them.
 
+use hwasp_training::stats::Interval;
 use hwasp_training::{MeanInterval, SuccessRate};
 
 /// A share in per cent.
@@ -40,9 +41,14 @@ pub(super) fn interval(low: f64, high: f64, decimals: usize) -> String {
     format!("{} to {}", decimal(low, decimals), decimal(high, decimals))
 }
 
+/// An interval, if there is one.
+pub(super) fn interval_or_none(of: Option<Interval>, decimals: usize) -> String {
+    of.map_or("no interval".to_owned(), |Interval { low, high }| interval(low, high, decimals))
+}
+
 /// The interval of a mean.
 pub(super) fn mean_interval(figure: &MeanInterval, decimals: usize) -> String {
-    interval(figure.low, figure.high, decimals)
+    interval_or_none(figure.interval, decimals)
 }
 
 /// The interval of a share, in per cent.

@@ -42,6 +42,15 @@ pub enum RunError {
         /// What it lacks.
         file: &'static str,
     },
+    /// An experiment that was changed after the training.
+    #[error(
+        "{path} was changed after the training: policy and figures beside it belong to another experiment; put back what it \
+         said, or train the changed one into a folder of its own"
+    )]
+    Edited {
+        /// The file.
+        path: PathBuf,
+    },
     /// Another program writes to it.
     #[error(
         "{path} is in use by process {owner}, which trains into it; wait for it or stop it, or train into another folder"
@@ -98,6 +107,16 @@ pub enum RunError {
     /// The experiment in it, put together.
     #[error(transparent)]
     Assemble(#[from] AssembleError),
+    /// Another machine than the one that was trained.
+    #[error("--set {assignment} changes {what}: {path} was trained for another machine")]
+    OtherMachine {
+        /// The run folder.
+        path: PathBuf,
+        /// What was set.
+        assignment: String,
+        /// What of the machine is another one for it.
+        what: &'static str,
+    },
     /// The learning curve.
     #[error("{path}: {source}")]
     Metrics {

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use hwasp_training::{Assembly, Evaluation, Trained};
 use serde::{Deserialize, Serialize};
 
+use crate::checkpoint::experiment_hash;
+
 /// One group of design parameters, SI.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DesignGroupSummary {
@@ -34,6 +36,10 @@ pub struct Summary {
     pub method: String,
     /// The problem.
     pub task: String,
+    /// SHA-256 of the values in its `experiment.toml`, so that a file that was changed afterwards is noticed; runs before 0.1.0
+    /// have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment_sha256: Option<String>,
     /// The root seed.
     pub seed: u64,
     /// Iterations done.
@@ -71,6 +77,7 @@ impl Summary {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
             task: spec.task.name().to_owned(),
+            experiment_sha256: spec.to_toml().ok().and_then(|text| values_hash(&text)),
             seed: spec.seed,
             iterations: trained.iterations,
             env_steps: trained.env_steps,
@@ -85,6 +92,13 @@ impl Summary {
             design: design_summary(assembly, &trained.params),
         }
     }
+}
+
+/// SHA-256 of what an experiment file says: of its values, whatever its comments, its layout and the order of its keys. None
+/// where it is no TOML.
+pub(crate) fn values_hash(text: &str) -> Option<String> {
+    let table: BTreeMap<String, toml::Value> = toml::from_str(text).ok()?;
+    serde_json::to_string(&table).ok().map(|values| experiment_hash(&values))
 }
 
 /// The design in `params`, by group.

@@ -34,6 +34,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use hwasp_training::{Event, Observer, ObserverError};
 use thiserror::Error;
 
+/// How the name of an event file begins; the time follows.
+const PREFIX: &str = "events.out.tfevents.";
+
 /// Why an event file cannot be written.
 #[derive(Debug, Error)]
 #[error("cannot write {path}: {source}")]
@@ -54,6 +57,8 @@ pub struct TensorBoard {
     /// Tags of the learner's metrics and of the design totals.
     tags: Vec<String>,
     env_steps: u64,
+    /// When the last record was written, s since 1970: never before the one before it, wherever the clock is set.
+    wall_time: f64,
     /// Whether the last record could not be written.
     failing: bool,
 }
@@ -62,11 +67,12 @@ impl TensorBoard {
     /// Begins a file in `folder`, which is created where it is missing.
     pub fn create(folder: &Path) -> Result<Self, TensorBoardError> {
         fs::create_dir_all(folder).map_err(|source| TensorBoardError { path: folder.to_owned(), source })?;
-        let now = now();
-        // Readers take the files of a folder in the order of their names.
-        let path = folder.join(format!("events.out.tfevents.{now:.6}.hwasp"));
+        // Readers take the files of a folder in the order of their names, and the clock may have been set back since the last.
+        let latest = latest(folder).map_err(|source| TensorBoardError { path: folder.to_owned(), source })?;
+        let now = if latest < now() { now() } else { latest + 1.0 };
+        let path = folder.join(format!("{PREFIX}{now:.6}.hwasp"));
         let file = File::create_new(&path).map_err(|source| TensorBoardError { path: path.clone(), source })?;
-        let mut board = Self { path, file, length: 0, tags: Vec::new(), env_steps: 0, failing: false };
+        let mut board = Self { path, file, length: 0, tags: Vec::new(), env_steps: 0, wall_time: now, failing: false };
         board.write(&version(now))?;
         Ok(board)
     }
@@ -89,8 +95,15 @@ impl TensorBoard {
         written.map_err(|source| TensorBoardError { path: self.path.clone(), source })
     }
 
+    /// The time of a record.
+    fn tick(&mut self) -> f64 {
+        self.wall_time = now().max(self.wall_time);
+        self.wall_time
+    }
+
     fn scalars<'a>(&mut self, scalars: impl Iterator<Item = (&'a str, f64)>) -> Result<(), TensorBoardError> {
-        match summary(now(), self.env_steps, scalars) {
+        let now = self.tick();
+        match summary(now, self.env_steps, scalars) {
             Some(event) => self.write(&event),
             None => Ok(()),
         }
@@ -103,7 +116,8 @@ impl Observer for TensorBoard {
             Event::Started { learner, totals, resumed, .. } => {
                 let learner = learner.iter().map(|name| format!("train/{name}"));
                 self.tags = learner.chain(totals.iter().map(|name| format!("design/{name}"))).collect();
-                resumed.map_or(Ok(()), |env_steps| self.write(&session(now(), env_steps + 1)))
+                let now = self.tick();
+                resumed.map_or(Ok(()), |env_steps| self.write(&session(now, env_steps + 1)))
             }
             Event::Iteration(row) => {
                 self.env_steps = row.env_steps;
@@ -132,6 +146,23 @@ impl Observer for TensorBoard {
         self.failing = written.is_err();
         Ok(())
     }
+}
+
+/// The latest time of the event files of a folder: when one was begun, which its name says, or last written to. 1970 where there
+/// is none.
+fn latest(folder: &Path) -> io::Result<f64> {
+    let mut latest = 0.0_f64;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let stamp =
+            name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(".hwasp")?.parse::<f64>().ok());
+        // Other files say nothing about this training.
+        let Some(begun) = stamp.filter(|stamp| stamp.is_finite()) else { continue };
+        let written = entry.metadata()?.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+        latest = latest.max(begun).max(written.map_or(0.0, |since| since.as_secs_f64()));
+    }
+    Ok(latest)
 }
 
 /// Seconds since 1970, UTC.

@@ -1,6 +1,7 @@
-//! Numbers as people read them.
+//! Numbers as people read them, and other people's text in Markdown.
 
 use hwasp_core::unit;
+use hwasp_settings::text::printable;
 
 use crate::summary::DesignGroupSummary;
 
@@ -15,6 +16,11 @@ pub fn grouped(count: u64) -> String {
         text.push(digit);
     }
     text
+}
+
+/// Text from files and arguments in Markdown: it ends no cell of a table, begins no tag and no line.
+pub fn markdown(text: &str) -> String {
+    printable(text).replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;")
 }
 
 /// A value with its unit: four decimals, and as many more as small quantities need for three figures.
@@ -54,5 +60,17 @@ impl ReadableUnit {
     pub fn short(&self, value: f64) -> String {
         let text = quantity(value / self.to_si, "");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A part called `T1 | <script>` broke the table of parts.md.
+    #[test]
+    fn names_stay_in_their_cells() {
+        assert_eq!(markdown("T1 | <script>\u{202e}\n"), "T1 \\| &lt;script>\u{fffd}\u{fffd}");
+        assert_eq!(markdown("fixed:2 N·m/rad"), "fixed:2 N·m/rad");
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use hwasp_core::Dimension;
 
 use crate::choice::Choice;
-use crate::field::{Field, Kind};
+use crate::field::{Field, Kind, readable};
 use crate::item::{Item, Keys};
 use crate::section::Section;
 use crate::text::show;
@@ -30,6 +30,7 @@ pub struct Fields<'f, 'r> {
     purpose: Purpose<'f, 'r>,
     default: Option<String>,
     limits: Option<String>,
+    kind: Option<Kind>,
 }
 
 enum Purpose<'f, 'r> {
@@ -59,7 +60,7 @@ pub fn described(settings: &mut (impl Settings + ?Sized)) -> Vec<Field> {
 
 impl<'f, 'r> Fields<'f, 'r> {
     fn new(purpose: Purpose<'f, 'r>) -> Self {
-        Self { purpose, default: None, limits: None }
+        Self { purpose, default: None, limits: None, kind: None }
     }
 
     /// Says in words what the default of the next field is, where it depends on other settings.
@@ -71,6 +72,12 @@ impl<'f, 'r> Fields<'f, 'r> {
     /// Says in words what the limits of the next field are.
     pub fn limits(&mut self, words: impl Into<String>) -> &mut Self {
         self.limits = Some(words.into());
+        self
+    }
+
+    /// Says what the value of the next field may be, where it is an [`open`](Self::open) one.
+    pub fn kind(&mut self, kind: Kind) -> &mut Self {
+        self.kind = Some(kind);
         self
     }
 
@@ -145,7 +152,7 @@ impl<'f, 'r> Fields<'f, 'r> {
         self.field(
             key,
             meaning,
-            || Kind::Text(most),
+            || if lines { Kind::Text(most) } else { Kind::Line(most) },
             &shown(&item),
             item.clone(),
             |section| {
@@ -194,7 +201,7 @@ impl<'f, 'r> Fields<'f, 'r> {
     ) {
         let kind = || Kind::Quantity(dimension, ends(&limits));
         let (exchanged, item) = (*value, quantity(*value, dimension));
-        self.field(key, meaning, kind, &shown(&item), item.clone(), |section| {
+        self.field(key, meaning, kind, &quoted(exchanged, dimension, &limits), item, |section| {
             *value = section.quantity(key, dimension, exchanged, &limits);
         });
     }
@@ -210,7 +217,8 @@ impl<'f, 'r> Fields<'f, 'r> {
     ) {
         let kind = || Kind::Optional(Box::new(Kind::Quantity(dimension, ends(&limits))));
         let item = value.map_or(Item::from("none"), |value| quantity(value, dimension));
-        self.field(key, meaning, kind, &shown(&item), item.clone(), |section| {
+        let default = value.map_or("\"none\"".to_owned(), |value| quoted(value, dimension, &limits));
+        self.field(key, meaning, kind, &default, item, |section| {
             if section.has(key) {
                 *value = section.optional_quantity(key, dimension, example, &limits);
             }
@@ -233,8 +241,9 @@ impl<'f, 'r> Fields<'f, 'r> {
         let kind = || Kind::List { of: Box::new(of()), length: [1, 2], single: true };
         let exchanged = *value;
         let item = Item::List(exchanged.iter().map(|&end| quantity(end, dimension)).collect());
-        let [from, to] = exchanged.map(|end| show(end));
-        let default = format!("{from} to {to} {}", dimension.si());
+        let unit = readable(dimension, *limits.end());
+        let [from, to] = exchanged.map(|end| unit.short(end));
+        let default = format!("{from} to {to} {}", unit.symbol);
         self.field(key, meaning, kind, default.trim_end(), item, |section| {
             *value = section.span(key, dimension, exchanged, &limits);
         });
@@ -359,12 +368,12 @@ impl<'f, 'r> Fields<'f, 'r> {
         item: Item,
         read: impl FnOnce(&mut Section<'r>),
     ) {
-        let (words, limits) = (self.default.take(), self.limits.take());
+        let (words, limits, given) = (self.default.take(), self.limits.take(), self.kind.take());
         match &mut self.purpose {
             Purpose::Read(section) => read(section),
             Purpose::Write(keys) => keys.push(key, item),
             Purpose::Describe(fields) => {
-                let kind = kind();
+                let kind = given.unwrap_or_else(kind);
                 fields.push(Field {
                     key: key.to_owned(),
                     default: words.unwrap_or_else(|| default.to_owned()),
@@ -385,7 +394,9 @@ impl<'f, 'r> Fields<'f, 'r> {
         read: impl FnOnce(&mut Section<'r>),
     ) {
         match item {
-            None if matches!(self.purpose, Purpose::Write(_)) => (self.default, self.limits) = (None, None),
+            None if matches!(self.purpose, Purpose::Write(_)) => {
+                (self.default, self.limits, self.kind) = (None, None, None);
+            }
             item => {
                 let default = item.as_ref().map_or("\"none\"".to_owned(), shown);
                 self.field(key, meaning, kind, &default, item.unwrap_or(Item::from("none")), read);
@@ -400,6 +411,15 @@ fn ends(limits: &RangeInclusive<f64>) -> [f64; 2] {
 
 fn names<T: Choice>() -> Vec<&'static str> {
     T::ALL.iter().map(|(name, _)| *name).collect()
+}
+
+/// A quantity as the reference shows it, in the unit of its limits.
+fn quoted(value: f64, dimension: Dimension, limits: &RangeInclusive<f64>) -> String {
+    let unit = readable(dimension, *limits.end());
+    match unit.symbol {
+        "" => unit.short(value),
+        symbol => format!("\"{} {symbol}\"", unit.short(value)),
+    }
 }
 
 /// A quantity as it is written; a pure number is no text.

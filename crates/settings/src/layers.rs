@@ -181,9 +181,30 @@ impl Layers {
         Reader::of(&self.sources, source)
     }
 
+    /// Tells values in the place of tables, which a later option's key in that table would replace without a word.
+    fn tell_replaced(&self, errors: &mut Faults) {
+        let is_table = |entry: &Entry| matches!(entry.node.value, Value::Table(_));
+        for (i, over) in self.overrides.iter().enumerate() {
+            for (key, entry) in over.iter().filter(|(_, entry)| is_table(entry)) {
+                let earlier = std::iter::once(&self.base).chain(&self.overrides[..i]);
+                for Entry { node, .. } in earlier.filter_map(|layer| layer.get(key)).filter(|entry| !is_table(entry)) {
+                    let (later, shown) = (self.sources[entry.node.origin.source].name(), node.shown());
+                    let finding = Finding {
+                        key: key.clone(),
+                        message: format!("{key} is {shown}, and a table for {later}"),
+                        hint: Some("leave one of them out".to_owned()),
+                    };
+                    let origin = &node.origin;
+                    errors.push_with(|| self.sources[origin.source].fault(origin.source, &origin.span, finding));
+                }
+            }
+        }
+    }
+
     /// Tells faults of the layers themselves: options that say nothing, tables for methods that are none of `methods`.
     pub fn tell(&self, methods: &[&str], errors: &mut Faults) {
         self.faults.iter().for_each(|fault| errors.push(fault.clone()));
+        self.tell_replaced(errors);
         for (name, key, node) in &self.overlays {
             let path = format!("methods.{}", shorten(name, 60));
             let mut add = |origin: &Origin, message: String, hint: String| {
@@ -294,4 +315,26 @@ fn split_key(key: &str) -> Result<Vec<String>, String> {
         return Err(format!("a key of {} parts is deeper than any that exists", parts.len()));
     }
     Ok(parts.into_iter().map(|part| part.trim().to_owned()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `--set train=[]` before `--env-steps 2400` was lost: the later option made a table of it.
+    #[test]
+    fn a_value_in_the_place_of_a_table_is_told_whatever_comes_later() {
+        let layers = Layers::from_text("mine.toml", "name = \"mine\"\n").unwrap();
+        let layers = layers.with_override("train", "[]").with_option("--env-steps 9".into(), "train.env_steps", "9");
+        let mut errors = Faults::default();
+        layers.tell(&[], &mut errors);
+        let told: Vec<_> = errors.faults().iter().map(|fault| (&*fault.place, &*fault.message)).collect();
+        assert_eq!(told, [("--set train=[]", "train is [], and a table for --env-steps 9")]);
+        // A list that a key of its own changes is no mistake.
+        let layers = Layers::from_text("mine.toml", "[design]\nplacements = []\n").unwrap();
+        let layers = layers.with_override("design.placements.gear", "action");
+        let mut errors = Faults::default();
+        layers.tell(&[], &mut errors);
+        assert_eq!(errors.count(), 0);
+    }
 }

@@ -11,6 +11,11 @@ pub fn printable(text: &str) -> String {
     text.chars().map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// The same of a text of several lines, whose line ends and tabs stay.
+pub fn printable_lines(text: &str) -> String {
+    text.chars().map(|c| if is_unprintable(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
+}
+
 /// The beginning of a text, [`printable`]: at most `most` characters, and an ellipsis where there are more.
 pub fn shorten(text: &str, most: usize) -> String {
     let mut out: String = text.chars().take(most).map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect();
@@ -35,6 +40,7 @@ mod tests {
     #[test]
     fn nothing_moves_the_cursor_or_turns_the_writing() {
         assert_eq!(printable("a\nb\u{1b}[31m\u{202e}c"), "a\u{fffd}b\u{fffd}[31m\u{fffd}c");
+        assert_eq!(printable_lines("a\n\tb\r\u{2066}c"), "a\n\tb\u{fffd}\u{fffd}c");
         assert_eq!(shorten("N·m/rad – ü", 20), "N·m/rad – ü");
     }
 }

@@ -1,19 +1,25 @@
 //! The cells of a grid: a run folder each.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use hwasp_core::Serial;
 use hwasp_experiment::EXPERIMENT;
 use hwasp_plot::{PlotOptions, curves_svg, plot_options};
 use hwasp_runs::metrics::MetricsTable;
-use hwasp_runs::{Keeping, Provenance, Resumed, RunFolder, SUMMARY, SavedRun, Summary, saved_experiment};
+use hwasp_runs::{
+    Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, Summary, encode, saved_experiment,
+};
 use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, train_from};
 
 use crate::error::CompareError;
+use crate::failure::{Failure, MissingSeed};
 
 /// The folder of the cells.
 pub(crate) const CELLS: &str = "cells";
+/// How often a cell is looked at that another process trains.
+const PAUSE: Duration = Duration::from_millis(300);
 
 /// One training of a grid.
 #[derive(Clone)]
@@ -46,18 +52,69 @@ pub trait Watch: Sync {
     fn cell(&self, cell: usize, event: Event<'_>);
     /// A cell failed; the others go on.
     fn failed(&self, cell: usize, error: &TrainError);
+    /// A cell failed in an earlier comparison, for this reason, and is not tried again.
+    fn failed_before(&self, _cell: usize, _reason: &str) {}
+    /// A cell is trained by another process, which calls itself so; its result is waited for.
+    fn waiting(&self, _cell: usize, _owner: &str) {}
+    /// The other process has brought the cell to its end.
+    fn joined(&self, _cell: usize) {}
+}
+
+/// How far a cell is.
+pub(crate) enum State {
+    /// There is something to do.
+    Open,
+    /// It is done.
+    Finished,
+    /// It failed, and would again.
+    Failed(Failure),
+}
+
+/// What became of the work on a cell.
+pub(crate) enum Worked {
+    /// It is done.
+    Finished(Box<CellResult>),
+    /// It is not.
+    Missing(MissingSeed),
+    /// Another process is at it, which calls itself so.
+    Held(String),
+}
+
+/// How a cell is worked on.
+#[derive(Clone, Copy)]
+pub(crate) struct Work<'a> {
+    pub(crate) command_line: &'a [String],
+    pub(crate) watch: &'a dyn Watch,
+    pub(crate) stop: &'a AtomicBool,
+}
+
+impl Work<'_> {
+    pub(crate) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
 }
 
 impl Cell {
-    /// Whether its run is there and done.
-    pub(crate) fn is_finished(&self) -> Result<bool, CompareError> {
+    /// How far it is.
+    ///
+    /// # Errors
+    /// [`CompareError::Other`] where its folder holds another experiment.
+    pub(crate) fn state(&self) -> Result<State, CompareError> {
         if !self.is_begun() {
-            return Ok(false);
+            return Ok(State::Open);
         }
         if saved_experiment(&self.path, &[], self.assembly.experiment().catalogue())? != *self.assembly.experiment() {
             return Err(CompareError::Other { path: self.path.clone() });
         }
-        Ok(self.path.join(SUMMARY).is_file())
+        if self.path.join(SUMMARY).is_file() {
+            return Ok(State::Finished);
+        }
+        Ok(Failure::read(&self.path, &self.toml()?)?.map_or(State::Open, State::Failed))
+    }
+
+    /// Its experiment, every setting resolved.
+    fn toml(&self) -> Result<String, RunError> {
+        self.assembly.experiment().to_toml().map_err(|error| encode(EXPERIMENT, &error))
     }
 
     /// Whether there is something to go on from.
@@ -70,40 +127,90 @@ impl Cell {
         Ok(CellResult { label: self.label.clone(), summary: saved.summary()?, metrics: saved.metrics()? })
     }
 
-    pub(crate) fn train(
-        &self,
-        index: usize,
-        command_line: &[String],
-        watch: &dyn Watch,
-        stop: &AtomicBool,
-    ) -> Result<Option<CellResult>, CompareError> {
-        let spec = self.assembly.experiment();
-        let (provenance, keeping) = (Provenance::new(command_line.to_vec(), 1, self.seed), Keeping::default());
-        let Resumed { mut folder, found } = if self.is_begun() {
-            RunFolder::resume(&self.path, spec, provenance, keeping)?
+    /// Why it has no figures where nothing failed.
+    pub(crate) fn stopped(&self) -> MissingSeed {
+        let how = if self.is_begun() { "the comparison was stopped on the way" } else { "it was not begun" };
+        MissingSeed::unfinished(self.seed, how)
+    }
+
+    /// Brings it to its end, unless another process is at it.
+    pub(crate) fn work(&self, index: usize, work: Work<'_>) -> Result<Worked, CompareError> {
+        loop {
+            match self.state()? {
+                State::Finished => return Ok(Worked::Finished(Box::new(self.result()?))),
+                State::Failed(failure) => {
+                    return Ok(Worked::Missing(MissingSeed::failed(self.seed, &failure.reason)));
+                }
+                State::Open if work.stopped() => return Ok(Worked::Missing(self.stopped())),
+                State::Open => match self.open(work) {
+                    Ok(resumed) => return self.train(index, resumed, work),
+                    Err(RunError::InUse { owner, .. }) => return Ok(Worked::Held(owner)),
+                    // Another process finished it, or began it, between our look and our grasp: look again.
+                    Err(RunError::Finished { .. }) => {}
+                    Err(RunError::Exists { .. }) if self.is_begun() => {}
+                    Err(error) => return Err(error.into()),
+                },
+            }
+        }
+    }
+
+    /// Waits for another process to end with it, and takes it over where that gave up.
+    pub(crate) fn wait(&self, index: usize, owner: &str, work: Work<'_>) -> Result<Worked, CompareError> {
+        work.watch.waiting(index, owner);
+        loop {
+            std::thread::sleep(PAUSE);
+            if work.stopped() {
+                return Ok(Worked::Missing(self.stopped()));
+            }
+            if !matches!(self.state()?, State::Open) {
+                work.watch.joined(index);
+            }
+            match self.work(index, work)? {
+                Worked::Held(_) => {}
+                worked => return Ok(worked),
+            }
+        }
+    }
+
+    fn open(&self, work: Work<'_>) -> Result<Resumed, RunError> {
+        let provenance = Provenance::new(work.command_line.to_vec(), 1, self.seed);
+        let (spec, keeping) = (self.assembly.experiment(), Keeping::default());
+        if self.is_begun() {
+            RunFolder::resume(&self.path, spec, provenance, keeping)
         } else {
-            RunFolder::create(&self.path, spec, &provenance, keeping)?.into()
-        };
+            Ok(RunFolder::create(&self.path, spec, &provenance, keeping)?.into())
+        }
+    }
+
+    fn train(&self, index: usize, resumed: Resumed, work: Work<'_>) -> Result<Worked, CompareError> {
+        let Resumed { mut folder, found } = resumed;
         found.warn();
-        let mut told = Told { index, watch };
+        let mut told = Told { index, watch: work.watch };
         let mut observers: Vec<&mut dyn Observer> = vec![&mut folder, &mut told];
         let from = found.checkpoint.as_ref();
-        let trained = train_from(from, &self.assembly, &Serial, &mut observers, stop);
+        let trained = train_from(from, &self.assembly, &Serial, &mut observers, work.stop);
         drop(observers);
         match trained {
             Ok(trained) => {
                 folder.finish(&self.assembly, &trained, &curves_svg)?;
                 // There may be hundreds of cells.
                 folder.remove_checkpoints()?;
-                self.result().map(Some)
+                Ok(Worked::Finished(Box::new(self.result()?)))
             }
             Err(TrainError::Interrupted { .. }) => {
                 folder.settle()?;
-                Ok(None)
+                Ok(Worked::Missing(self.stopped()))
             }
             Err(error) => {
-                watch.failed(index, &error);
-                Ok(None)
+                work.watch.failed(index, &error);
+                let reason = error.to_string();
+                Ok(Worked::Missing(match Failure::of(&error, &self.toml()?) {
+                    Some(failure) => {
+                        failure.write(&self.path)?;
+                        MissingSeed::failed(self.seed, &reason)
+                    }
+                    None => MissingSeed::unfinished(self.seed, &reason),
+                }))
             }
         }
     }

@@ -34,6 +34,14 @@ pub enum CompareError {
     /// A contender named twice.
     #[error("`{0}` is named twice; name it once, and say with --seeds how often it is to be trained")]
     Twice(String),
+    /// Two contenders that would train the same.
+    #[error("`{one}` and `{other}` are the same experiment, every setting resolved; name one of them")]
+    Same {
+        /// The one.
+        one: String,
+        /// The other.
+        other: String,
+    },
     /// A cell that holds a run of another experiment.
     #[error("{path} holds another experiment, or one with other settings; name another folder with --out")]
     Other {

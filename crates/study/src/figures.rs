@@ -3,11 +3,13 @@
 use hwasp_core::Stream;
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_training::TRAILING;
-use hwasp_training::stats::{Bootstrap, Sample, StatsError, improvement};
+use hwasp_training::stats::{self, Bootstrap, Improvement, Interval, Sample, StatsError, improvement};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use crate::cell::CellResult;
+use crate::failure::MissingSeed;
+use crate::outcome::Contest;
 
 /// The bootstrap of a comparison draws the same resamples every time.
 const RESAMPLES: [u8; 32] = *b"bootstrap of hwasp's comparisons";
@@ -17,10 +19,10 @@ const RESAMPLES: [u8; 32] = *b"bootstrap of hwasp's comparisons";
 pub struct Figure {
     /// The interquartile mean.
     pub iqm: f64,
-    /// The lower end of the interval.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
+    /// The interval, as `low` and `high`; none where the seeds
+    /// [carry none](hwasp_training::stats#what-a-sample-cannot-carry).
+    #[serde(flatten)]
+    pub interval: Option<Interval>,
 }
 
 impl Figure {
@@ -28,7 +30,12 @@ impl Figure {
         let sample = Sample::new(values)?;
         let mut stream = Stream::from_seed(RESAMPLES);
         let interval = Bootstrap::default().interval(&sample, Sample::interquartile_mean, &mut stream)?;
-        Ok(Self { iqm: sample.interquartile_mean(), low: interval.low, high: interval.high })
+        Ok(Self { iqm: sample.interquartile_mean(), interval })
+    }
+
+    /// Of values that there may be none of.
+    fn of_any(values: &[f64]) -> Result<Option<Self>, StatsError> {
+        if values.is_empty() { Ok(None) } else { Self::of(values).map(Some) }
     }
 }
 
@@ -41,19 +48,37 @@ pub struct Reached {
     pub median_env_steps: Option<f64>,
 }
 
-/// What one method reached.
+impl Reached {
+    /// Of the steps of each seed, where it reached it.
+    fn of(steps: Vec<Option<f64>>) -> Self {
+        let seeds = steps.iter().flatten().count();
+        let mut steps: Vec<f64> = steps.into_iter().map(|steps| steps.unwrap_or(f64::INFINITY)).collect();
+        steps.sort_unstable_by(f64::total_cmp);
+        let middle = |place: usize| steps.get(place).copied();
+        let median = middle(steps.len().saturating_sub(1) / 2).zip(middle(steps.len() / 2)).map(|(a, b)| 0.5 * (a + b));
+        Self { seeds, median_env_steps: median.filter(|steps| steps.is_finite()) }
+    }
+}
+
+/// What one method reached. Where no seed finished there are no figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodFigures {
     /// The method.
     pub label: String,
-    /// Seeds that finished.
+    /// How many seeds finished.
     pub seeds: usize,
+    /// Those seeds. Comparisons written before 0.1.0 do not name them, nor those that did not finish.
+    #[serde(default)]
+    pub finished_seeds: Vec<u64>,
+    /// The other seeds, each with the reason.
+    #[serde(default)]
+    pub missing: Vec<MissingSeed>,
     /// Deterministic discounted return on held-out starts, on the hardware as built.
-    pub evaluation: Figure,
+    pub evaluation: Option<Figure>,
     /// The same, seed by seed.
     pub evaluations: Vec<f64>,
     /// Area under the learning curve: the training return's mean over the whole budget.
-    pub area_under_curve: Figure,
+    pub area_under_curve: Option<Figure>,
     /// Steps to the threshold.
     pub threshold: Reached,
     /// Distance of a design total as built from the known optimum, by group, SI; empty where none is known.
@@ -61,20 +86,41 @@ pub struct MethodFigures {
     /// Design totals as built, by group, seed by seed, SI.
     pub design_totals: Vec<(String, Vec<f64>)>,
     /// Real simulator steps charged, the mean over seeds.
-    pub env_steps: f64,
+    pub env_steps: Option<f64>,
+    /// Real simulator steps that each seed may take, at most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<u64>,
+    /// What of them the method takes whole or not at all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub piece: Option<Indivisible>,
     /// Time of training, s, the mean over seeds.
-    pub wall_s: f64,
+    pub wall_s: Option<f64>,
     /// Candidates that failed, over all seeds.
     pub failed_candidates: u64,
 }
 
+/// The smallest part of a training that its method does whole or not at all.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Indivisible {
+    /// `episode` or `generation`.
+    pub what: String,
+    /// Real simulator steps that it takes, at most.
+    pub env_steps: u64,
+}
+
 impl MethodFigures {
-    pub(super) fn of(label: &str, cells: &[&CellResult], threshold: f64) -> Result<Self, StatsError> {
+    /// `cells`: those that finished.
+    pub(super) fn of(
+        contest: &Contest,
+        cells: &[&CellResult],
+        missing: Vec<MissingSeed>,
+        threshold: Option<f64>,
+    ) -> Result<Self, StatsError> {
         let each = |pick: &dyn Fn(&CellResult) -> f64| cells.iter().map(|cell| pick(cell)).collect::<Vec<f64>>();
-        let mean = |pick: &dyn Fn(&CellResult) -> f64| each(pick).iter().sum::<f64>() / cells.len() as f64;
+        let mean = |pick: &dyn Fn(&CellResult) -> f64| stats::mean(&each(pick)).ok();
         let evaluations = each(&|c| c.summary.evaluation.discounted_return.mean);
         let budget = cells.iter().map(|c| c.summary.env_steps).max().unwrap_or(0);
-        let mut design_error = Vec::new();
+        let mut design_error: Vec<(String, Figure)> = Vec::new();
         let mut design_totals = Vec::new();
         for (group, first) in cells.first().map(|c| &c.summary.design).into_iter().flatten() {
             let totals = each(&|c| c.summary.design.get(group).map_or(f64::NAN, |g| g.total_as_built));
@@ -84,26 +130,34 @@ impl MethodFigures {
             }
             design_totals.push((group.clone(), totals));
         }
-        let mut reached: Vec<f64> = cells.iter().filter_map(|c| steps_to(&c.metrics, threshold)).collect();
-        reached.resize(cells.len().max(reached.len()), f64::INFINITY);
-        reached.sort_unstable_by(f64::total_cmp);
-        let median = 0.5 * (reached[(cells.len() - 1) / 2] + reached[cells.len() / 2]);
+        let reached = |c: &&CellResult| threshold.and_then(|threshold| steps_to(&c.metrics, threshold));
         Ok(Self {
-            label: label.to_owned(),
+            label: contest.label.clone(),
             seeds: cells.len(),
-            evaluation: Figure::of(&evaluations)?,
+            finished_seeds: cells.iter().map(|c| c.summary.seed).collect(),
+            missing,
+            evaluation: Figure::of_any(&evaluations)?,
             evaluations,
-            area_under_curve: Figure::of(&each(&|c| area(&c.metrics, budget)))?,
-            threshold: Reached {
-                seeds: reached.iter().filter(|steps| steps.is_finite()).count(),
-                median_env_steps: median.is_finite().then_some(median),
-            },
+            area_under_curve: Figure::of_any(&each(&|c| area(&c.metrics, budget)))?,
+            threshold: Reached::of(cells.iter().map(reached).collect()),
             design_error,
             design_totals,
             env_steps: mean(&|c| c.summary.env_steps as f64),
+            budget: Some(contest.budget),
+            piece: Some(Indivisible { what: contest.piece.what.to_owned(), env_steps: contest.piece.env_steps }),
             wall_s: mean(&|c| c.summary.wall_s),
             failed_candidates: cells.iter().filter_map(|c| c.summary.failed_candidates).sum(),
         })
+    }
+
+    /// How many seeds there should be; none where an old comparison does not say.
+    pub fn asked(&self) -> Option<usize> {
+        (self.finished_seeds.len() == self.seeds).then(|| self.seeds + self.missing.len())
+    }
+
+    /// How many seeds finished, in words: `3 of 5`.
+    pub fn finished(&self) -> String {
+        self.asked().map_or(self.seeds.to_string(), |asked| format!("{} of {asked}", self.seeds))
     }
 }
 
@@ -115,20 +169,20 @@ pub struct Pair {
     pub method: String,
     /// The other.
     pub other: String,
-    /// The probability that the one is better.
-    pub probability: f64,
-    /// The lower end of the interval.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
+    /// The probability that the one is better, as `probability`, `low` and `high`; none where the seeds
+    /// [carry none](hwasp_training::stats#what-a-sample-cannot-carry).
+    #[serde(flatten)]
+    pub improvement: Option<Improvement>,
 }
 
 impl Pair {
     pub(super) fn of(one: &MethodFigures, other: &MethodFigures) -> Result<Self, StatsError> {
         let mut stream = Stream::from_seed(RESAMPLES);
-        let (probability, interval) = improvement(&one.evaluations, &other.evaluations, &mut stream)?;
-        let (low, high) = (interval.low, interval.high);
-        Ok(Self { method: one.label.clone(), other: other.label.clone(), probability, low, high })
+        let improvement = match (&one.evaluations[..], &other.evaluations[..]) {
+            ([], _) | (_, []) => None,
+            (one, other) => improvement(one, other, &mut stream)?,
+        };
+        Ok(Self { method: one.label.clone(), other: other.label.clone(), improvement })
     }
 }
 
@@ -162,11 +216,11 @@ fn steps_to(metrics: &MetricsTable, threshold: f64) -> Option<f64> {
 }
 
 /// Nine tenths of the way from the worst first return of all runs to the best last one.
-pub(super) fn default_threshold(cells: &[CellResult]) -> f64 {
+pub(super) fn default_threshold(cells: &[CellResult]) -> Option<f64> {
     let firsts = cells.iter().filter_map(|c| c.metrics.rows.first()).map(|row| row.discounted_return);
     let lasts = cells.iter().filter_map(|c| trailing(&c.metrics).last()).map(|(_, mean)| mean);
     let (worst, best) = (firsts.fold(f64::INFINITY, f64::min), lasts.fold(f64::NEG_INFINITY, f64::max));
-    worst + 0.9 * (best - worst)
+    Some(worst + 0.9 * (best - worst)).filter(|threshold| threshold.is_finite())
 }
 
 #[cfg(test)]

@@ -1,15 +1,17 @@
 //! Grids of methods and seeds.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
-use hwasp_experiment::{Catalogue, Layers, resolve};
+use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
 use hwasp_training::Assembly;
 
-use crate::cell::{CELLS, Cell, CellResult, Watch};
+use crate::cell::{CELLS, Cell, State, Watch, Work, Worked};
 use crate::contender::Contender;
 use crate::error::CompareError;
+use crate::failure::MissingSeed;
+use crate::outcome::{MissingCell, Outcome};
 
 /// What is compared.
 #[derive(Clone, Debug)]
@@ -47,32 +49,80 @@ impl Grid {
                 cells.push(Cell { label: contender.label.clone(), seed, path, assembly });
             }
         }
+        check_apart(&cells)?;
         Ok(cells)
     }
 }
 
-/// Runs what is not finished yet, cells in parallel, each on one thread, and returns what is. Cells that failed are told to
-/// `watch` and missing from the result. When `stop` is set, cells under way are left as they are, to be resumed.
+/// Refuses contenders that would train the same.
+fn check_apart(cells: &[Cell]) -> Result<(), CompareError> {
+    // Seeds are the same for all of them.
+    let of_a_seed: Vec<&Cell> = cells.iter().filter(|cell| cell.seed == cells[0].seed).collect();
+    for (i, cell) in of_a_seed.iter().enumerate() {
+        let same = |other: &&&Cell| other.assembly.experiment() == cell.assembly.experiment();
+        if let Some(other) = of_a_seed[..i].iter().find(same) {
+            return Err(CompareError::Same { one: other.label.clone(), other: cell.label.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Names of the folders in `cells/` that are none of these cells.
+fn others(cells: &[Cell]) -> Vec<String> {
+    let Some(folder) = cells.first().and_then(|cell| cell.path.parent()) else { return Vec::new() };
+    // A folder that is not there yet holds no others.
+    let entries = folder.read_dir().into_iter().flatten().flatten().map(|entry| entry.path());
+    let foreign = entries.filter(|path| path.join(EXPERIMENT).is_file() && cells.iter().all(|cell| cell.path != *path));
+    let mut names: Vec<String> =
+        foreign.filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())).collect();
+    names.sort_unstable();
+    names
+}
+
+/// Runs what is not finished yet, cells in parallel, each on one thread. A cell that failed is remembered and not tried again.
+/// A cell that another process trains is waited for, after all that nobody trains. When `stop` is set, cells under way are
+/// left as they are, to be resumed.
 pub fn run(
     cells: &[Cell],
     executor: &dyn Executor,
     command_line: &[String],
     watch: &dyn Watch,
     stop: &AtomicBool,
-) -> Result<Vec<CellResult>, CompareError> {
-    let finished = cells.iter().map(Cell::is_finished).collect::<Result<Vec<_>, _>>()?;
-    let known = cells.iter().zip(&finished).map(|(cell, &finished)| {
-        (format!("{} seed {}", cell.label, cell.seed), cell.assembly.experiment().train.env_steps, finished)
+) -> Result<Outcome, CompareError> {
+    let states = cells.iter().map(Cell::state).collect::<Result<Vec<_>, _>>()?;
+    let known = cells.iter().zip(&states).map(|(cell, state)| {
+        let label = format!("{} seed {}", cell.label, cell.seed);
+        (label, cell.assembly.experiment().train.env_steps, !matches!(state, State::Open))
     });
     watch.grid(&known.collect::<Vec<_>>());
-    let results = executor.map(cells.len(), |i| {
-        if finished[i] {
-            return cells[i].result().map(Some);
+    for (i, state) in states.iter().enumerate() {
+        if let State::Failed(failure) = state {
+            watch.failed_before(i, &failure.reason);
         }
-        if stop.load(Ordering::Relaxed) {
-            return Ok(None);
+    }
+    let work = Work { command_line, watch, stop };
+    let mut worked =
+        executor.map(cells.len(), |i| cells[i].work(i, work)).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let held: Vec<(usize, String)> = worked
+        .iter()
+        .enumerate()
+        .filter_map(|(i, worked)| if let Worked::Held(owner) = worked { Some((i, owner.clone())) } else { None })
+        .collect();
+    let waited = executor.map(held.len(), |k| cells[held[k].0].wait(held[k].0, &held[k].1, work));
+    for ((i, _), waited) in held.iter().zip(waited) {
+        worked[*i] = waited?;
+    }
+    let mut outcome = Outcome { others: others(cells), ..Outcome::of(cells) };
+    for (cell, worked) in cells.iter().zip(worked) {
+        let label = cell.label.clone();
+        match worked {
+            Worked::Finished(result) => outcome.finished.push(*result),
+            Worked::Missing(seed) => outcome.missing.push(MissingCell { label, seed }),
+            Worked::Held(owner) => {
+                let reason = format!("process {owner} trains it");
+                outcome.missing.push(MissingCell { label, seed: MissingSeed::unfinished(cell.seed, &reason) });
+            }
         }
-        cells[i].train(i, command_line, watch, stop)
-    });
-    results.into_iter().filter_map(Result::transpose).collect()
+    }
+    Ok(outcome)
 }

@@ -10,6 +10,7 @@ use crate::contender::Contender;
 use crate::error::CompareError;
 use crate::figures::trailing;
 use crate::grid::Grid;
+use crate::outcome::Outcome;
 
 /// A figure or table of the paper.
 #[derive(Clone, Copy, Debug)]
@@ -137,14 +138,17 @@ impl PaperFigure {
     }
 
     /// What was published beside what came out, as Markdown; empty where nothing is known.
-    pub fn beside(&self, experiment: &str, cells: &[CellResult]) -> String {
+    pub fn beside(&self, experiment: &str, outcome: &Outcome) -> String {
         let mut text = String::new();
         for known in self.published.iter().filter(|known| known.experiment == experiment) {
-            let values: Vec<f64> =
-                cells.iter().filter(|c| c.label == known.method).filter_map(|c| known.what.of(c)).collect();
+            let cells = outcome.finished.iter().filter(|c| c.label == known.method);
+            let values: Vec<f64> = cells.clone().filter_map(|c| known.what.of(c)).collect();
+            let missing = outcome.missing.iter().filter(|c| c.label == known.method).count();
+            let of = format!("{} of {} seeds", values.len(), cells.count() + missing);
             let ours = match Sample::new(&values) {
-                Ok(s) => format!("{:.1} ({:.1} to {:.1})", s.interquartile_mean(), s.min(), s.max()),
-                Err(_) => "not reached".to_owned(),
+                Ok(s) if values.len() == 1 => format!("{:.1} ({of})", s.mean()),
+                Ok(s) => format!("{:.1} ({:.1} to {:.1}, {of})", s.interquartile_mean(), s.min(), s.max()),
+                Err(_) => format!("not reached ({of})"),
             };
             let _ =
                 writeln!(text, "| {} | {} | {} | {ours} | {} |", known.method, known.what, known.value, known.source);

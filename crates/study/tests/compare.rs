@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Threads;
-use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid, Watch};
+use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome, Watch};
 use hwasp_training::{Event, TrainError};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
@@ -50,7 +50,7 @@ impl Watch for Counter {
     }
 }
 
-fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, CompareError> {
+fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Outcome, CompareError> {
     study::run(
         &grid.cells(folder, hwasp_testing::catalogue())?,
         &Threads::new(2).unwrap(),
@@ -61,10 +61,10 @@ fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Vec<CellResult>, C
 }
 
 /// The figures without times.
-fn figures(cells: &[CellResult]) -> Comparison {
-    let mut comparison = Comparison::new("reach", cells, None).unwrap();
+fn figures(outcome: &Outcome) -> Comparison {
+    let mut comparison = Comparison::new("reach", outcome, None).unwrap();
     for method in &mut comparison.methods {
-        method.wall_s = 0.0;
+        method.wall_s = None;
     }
     comparison
 }
@@ -78,7 +78,7 @@ fn a_killed_comparison_goes_on_and_ends_with_the_same_figures() {
 
     let folder = empty("killed");
     let first = Counter { stop_after: Some(2), ..Counter::default() };
-    let finished = run(&grid, &folder, &first).unwrap().len();
+    let finished = run(&grid, &folder, &first).unwrap().finished.len();
     assert!((1..9).contains(&finished), "{finished}");
     // A kill leaves a cell without a summary, or a folder without anything whole.
     let mut cells: Vec<_> = fs::read_dir(folder.join("cells")).unwrap().map(|e| e.unwrap().path()).collect();
@@ -113,7 +113,7 @@ fn a_folder_of_another_comparison_is_refused_and_left_alone() {
     let error = run(&grid(&["hwasp"], "0.1"), &folder, &Counter::default()).unwrap_err();
     assert!(matches!(error, CompareError::Other { .. }), "{error}");
     let again = Counter::default();
-    assert_eq!(run(&grid(&["hwasp"], "0.2"), &folder, &again).unwrap().len(), 3);
+    assert_eq!(run(&grid(&["hwasp"], "0.2"), &folder, &again).unwrap().finished.len(), 3);
     assert_eq!(*again.trained.lock().unwrap(), 0);
 }
 
@@ -124,10 +124,10 @@ fn what_a_comparison_writes() {
     let cells = run(&grid, &folder, &Counter::default()).unwrap();
     let comparison = Comparison::new("reach", &cells, Some(-1e9)).unwrap();
     let options = grid.cells(&folder, hwasp_testing::catalogue()).unwrap()[0].plot_options();
-    comparison.write(&folder, &cells, &options).unwrap();
+    comparison.write(&folder, &cells.finished, &options).unwrap();
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     assert_eq!(read("table.md"), comparison.markdown());
-    assert!(read("table.md").contains("| fixed:0.3 | 3 |"));
+    assert!(read("table.md").contains("| fixed:0.3 | 3 of 3 |"));
     assert_eq!(read("table.csv").lines().count(), 3);
     let json: serde_json::Value = serde_json::from_str(&read("comparison.json")).unwrap();
     // Every first row is above such a threshold.

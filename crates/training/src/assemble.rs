@@ -14,6 +14,7 @@ use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
 pub(crate) use self::budget::FINAL_EPISODES;
+pub use self::budget::Piece;
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;
@@ -172,12 +173,13 @@ impl Assembly {
         self.fixed_in(&self.worlds.deployment, built, false)
     }
 
-    /// The trained controller on hardware fixed to `design`, in any world of this problem. `train_noise`: whether its
+    /// The trained controller on hardware that was built to `design`, in any world of this problem. Errors of the workshop may
+    /// have put it outside of the limits. `train_noise`: whether its
     /// parameters hold standard deviations.
     pub fn fixed_in(&self, world: &World, design: &[f64], train_noise: bool) -> Result<HardwarePolicy, AssembleError> {
         let mut spec = self.policy.spec().clone();
         spec.law = world.law.clone();
-        spec.placements = design.iter().map(|&value| Placement::Fixed(value)).collect();
+        spec.placements = design.iter().map(|&value| Placement::Built(value)).collect();
         spec.noise.train = train_noise;
         Ok(HardwarePolicy::new(spec, &world.env)?)
     }

@@ -43,10 +43,31 @@ impl From<CollectError> for EvaluateError {
 pub struct MeanInterval {
     /// The mean.
     pub mean: f64,
-    /// The lower end of the interval.
-    pub low: f64,
-    /// The upper end.
-    pub high: f64,
+    /// The interval, as `low` and `high`; none where the episodes [carry none](crate::stats#what-a-sample-cannot-carry).
+    #[serde(flatten)]
+    pub interval: Option<Interval>,
+}
+
+impl MeanInterval {
+    /// The same in units of which one is `scale` of these.
+    #[must_use]
+    pub fn scaled(&self, scale: f64) -> Self {
+        let interval = self.interval.map(|i| Interval { low: scale * i.low, high: scale * i.high });
+        Self { mean: scale * self.mean, interval }
+    }
+}
+
+/// With the decimals of the format, `-8.5 [-9.1, -8.0]`; `-8.5 (no interval)` where there is none.
+impl std::fmt::Display for MeanInterval {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let decimals = f.precision().unwrap_or(2);
+        match self.interval {
+            Some(Interval { low, high }) => {
+                write!(f, "{:.decimals$} [{low:.decimals$}, {high:.decimals$}]", self.mean)
+            }
+            None => write!(f, "{:.decimals$} (no interval)", self.mean),
+        }
+    }
 }
 
 /// What a design and its controller are worth.
@@ -140,6 +161,5 @@ impl Evaluation {
 }
 
 pub(crate) fn mean_interval(values: &[f64], stream: &mut Stream) -> Result<MeanInterval, StatsError> {
-    let Interval { low, high, .. } = bootstrap_interval(values, Sample::mean, stream)?;
-    Ok(MeanInterval { mean: Sample::new(values)?.mean(), low, high })
+    Ok(MeanInterval { mean: Sample::new(values)?.mean(), interval: bootstrap_interval(values, Sample::mean, stream)? })
 }

@@ -42,7 +42,7 @@ pub(crate) fn gradient(
         totals: &assembly.total_names(),
     })?;
     run.clock = Clock::start(state.learned.wall_s);
-    while state.learned.env_steps < budget {
+    while state.episodes() > 0 {
         if (run.stopped)() {
             run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
             return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
@@ -112,13 +112,18 @@ impl<'a> Gradient<'a> {
         self.assembly.experiment().train.progress(self.learned.env_steps)
     }
 
+    /// How many episodes the iteration at hand has, 0 where the budget is spent.
+    fn episodes(&self) -> u64 {
+        self.assembly.iteration_episodes(self.learned.env_steps)
+    }
+
     /// The episodes of the iteration at hand.
     fn collect(&self, collector: &dyn Collector, experiment: &ExperimentText) -> Result<Batch, TrainError> {
         let train = &self.assembly.experiment().train;
         let episodes = Episodes {
             seed: self.assembly.experiment().seed,
             iteration: self.learned.iterations,
-            indices: 0..train.episodes_per_iteration as u64,
+            indices: 0..self.episodes(),
             progress: self.progress(),
             kind: EpisodeKind::Training,
         };
@@ -134,7 +139,7 @@ impl<'a> Gradient<'a> {
 
     /// The update of the iteration at hand.
     fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
-        let asked = self.assembly.experiment().train.episodes_per_iteration;
+        let asked = self.episodes() as usize;
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
         if in_a_row >= MOST_FAULTY_ITERATIONS

@@ -14,6 +14,7 @@ mod evaluate;
 mod evaluation;
 mod gradient;
 mod learned;
+mod machine;
 mod metrics;
 mod observer;
 mod paired;
@@ -22,7 +23,7 @@ pub mod stats;
 mod train;
 mod worker;
 
-pub use assemble::{AssembleError, Assembly, total_name};
+pub use assemble::{AssembleError, Assembly, Piece, total_name};
 pub use checkpoint::Checkpoint;
 pub use collect::Collector;
 pub use error::TrainError;

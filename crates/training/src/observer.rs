@@ -11,7 +11,7 @@ use crate::metrics::MetricsRow;
 pub enum Event<'a> {
     /// Training begins, or goes on.
     Started {
-        /// Real simulator steps it will take, at least.
+        /// Real simulator steps it may take, at most.
         env_steps: u64,
         /// The steps that were taken before it was interrupted, where it goes on.
         resumed: Option<u64>,

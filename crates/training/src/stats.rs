@@ -3,10 +3,35 @@
 //! A few seeds are all that one has, so results are given as an interquartile mean with a bootstrap interval over the
 //! runs, as Agarwal et al. argue in "Deep reinforcement learning at the edge of the statistical precipice" (NeurIPS
 //! 2021). Everything depends on the values alone, not on the order they come in, and is the same on every machine.
+//!
+//! # What a sample cannot carry
+//!
+//! One rule for every interval that a command prints, over seeds or over episodes: a bootstrap interval needs at least
+//! [`LEAST_VALUES`] values that are not all alike, and a probability of improvement that many on both sides. Where there
+//! is less, there is no interval ([`Option::None`]), and the values stand for themselves.
+//!
+//! The reasons. The percentile interval of a mean never leaves the range of its values. The range of n values of a
+//! symmetric distribution holds the centre with probability 1 − 2^(1 − n), so that the nominal 95 % is at most:
+//!
+//! | values | 1 | 2 | 3 | 4 | 5 | 6 |
+//! |---|---|---|---|---|---|---|
+//! | covers at most | 0 % | 50 % | 75 % | 88 % | 94 % | 97 % |
+//!
+//! Up to three values, the interval is the range itself and says nothing that the values do not: n equal draws of the
+//! smallest value have the probability n^−n, which is more than the 2.5 % of a tail. And two methods with four seeds each
+//! are the smallest that any outcome tells apart at 5 %: when every seed of the one beats every seed of the other, chance
+//! alone does so in [2 of 70 cases](separation_by_chance), with three seeds each in 2 of 20.
+//!
+//! Values that are all alike resample to themselves. A point would be printed as if it were certain; all that is known is
+//! that this sample has no variation.
 
 use hwasp_core::Stream;
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+/// The fewest values that carry an interval; the module says why.
+pub const LEAST_VALUES: usize = 4;
 
 /// Why a figure cannot be computed.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -95,6 +120,12 @@ impl Sample {
         low + (high - low) * (place - below as f64)
     }
 
+    /// Whether a bootstrap interval of these values says more than the values themselves: there are at least
+    /// [`LEAST_VALUES`], and not all are alike.
+    pub fn carries_interval(&self) -> bool {
+        self.sorted.len() >= LEAST_VALUES && self.min() < self.max()
+    }
+
     /// The smallest value.
     pub fn min(&self) -> f64 {
         self.sorted[0]
@@ -117,7 +148,7 @@ pub fn interquartile_mean(values: &[f64]) -> Result<f64, StatsError> {
 }
 
 /// An interval, ends included, in the unit of the values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Its lower end.
     pub low: f64,
@@ -132,7 +163,8 @@ pub struct Interval {
 /// | `resamples` | 2000 | how many resamples the percentiles are taken over | 1 to 1,000,000 |
 /// | `confidence` | 0.95 | the share of resamples inside the interval | between 0 and 1 |
 ///
-/// With very few values the interval is too narrow: at 20 normal values a nominal 95 % covers about 93 %, at 5 about 83 %.
+/// With few values the interval is too narrow: at 20 normal values a nominal 95 % covers about 93 %, at 5 about 83 %. With
+/// very few there is none: [the rule](self#what-a-sample-cannot-carry).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
     /// How many resamples the percentiles are taken over.
@@ -151,13 +183,14 @@ impl Bootstrap {
     /// More resamples than this are a slip, not a wish.
     pub const MOST_RESAMPLES: usize = 1_000_000;
 
-    /// The percentile interval of `statistic` over `sample`. The same values and the same stream give the same interval.
+    /// The percentile interval of `statistic` over `sample`, where the sample [carries one](Sample::carries_interval). The
+    /// same values and the same stream give the same interval; the stream moves on as far with an interval as without.
     pub fn interval(
         &self,
         sample: &Sample,
         statistic: impl Fn(&Sample) -> f64,
         stream: &mut Stream,
-    ) -> Result<Interval, StatsError> {
+    ) -> Result<Option<Interval>, StatsError> {
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
             return Err(StatsError::Confidence(self.confidence));
         }
@@ -187,16 +220,18 @@ impl Bootstrap {
         }
         let figures = Sample::new(&figures)?;
         let tail = (1.0 - self.confidence) / 2.0;
-        Ok(Interval { low: figures.quantile(tail), high: figures.quantile(1.0 - tail) })
+        let interval = Interval { low: figures.quantile(tail), high: figures.quantile(1.0 - tail) };
+        Ok(sample.carries_interval().then_some(interval))
     }
 }
 
-/// The 95 % percentile-bootstrap interval of `statistic` with 2000 resamples; [`Bootstrap`] has other settings.
+/// The 95 % percentile-bootstrap interval of `statistic` with 2000 resamples, where the values carry one; [`Bootstrap`] has
+/// other settings.
 pub fn bootstrap_interval(
     values: &[f64],
     statistic: impl Fn(&Sample) -> f64,
     stream: &mut Stream,
-) -> Result<Interval, StatsError> {
+) -> Result<Option<Interval>, StatsError> {
     Bootstrap::default().interval(&Sample::new(values)?, statistic, stream)
 }
 
@@ -212,10 +247,24 @@ fn mean_of(values: &[f64]) -> f64 {
     if sum.is_finite() { sum / n } else { values.iter().map(|v| v / n).sum() }
 }
 
+/// How probably a value of one sample is larger than a value of another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Improvement {
+    /// The share of all pairs in which it is, ties counted half.
+    pub probability: f64,
+    /// Its 95 % interval; none where all pairs agree: every resample gives the same share then.
+    #[serde(flatten)]
+    pub interval: Option<Interval>,
+}
+
 /// How probably a value of `one` is larger than a value of `other`: the share of all pairs, ties counted half
-/// (Mann and Whitney's U over the number of pairs), with the 95 % percentile interval of 2000 resamples of both.
-pub fn improvement(one: &[f64], other: &[f64], stream: &mut Stream) -> Result<(f64, Interval), StatsError> {
+/// (Mann and Whitney's U over the number of pairs), with the 95 % percentile interval of 2000 resamples of both. None
+/// where either has fewer than [`LEAST_VALUES`] values.
+pub fn improvement(one: &[f64], other: &[f64], stream: &mut Stream) -> Result<Option<Improvement>, StatsError> {
     let (one, other) = (Sample::new(one)?, Sample::new(other)?);
+    if one.sorted.len().min(other.sorted.len()) < LEAST_VALUES {
+        return Ok(None);
+    }
     let share = |one: &[f64], other: &[f64]| {
         let wins = one.iter().flat_map(|x| {
             other.iter().map(move |y| {
@@ -241,7 +290,15 @@ pub fn improvement(one: &[f64], other: &[f64], stream: &mut Stream) -> Result<(f
         .collect();
     let shares = Sample::new(&shares)?;
     let interval = Interval { low: shares.quantile(0.025), high: shares.quantile(0.975) };
-    Ok((share(&one.sorted, &other.sorted), interval))
+    let probability = share(&one.sorted, &other.sorted);
+    Ok(Some(Improvement { probability, interval: shares.carries_interval().then_some(interval) }))
+}
+
+/// How probably chance alone separates two samples of these sizes, the larger values all on one side, where both come from
+/// the same distribution: 2 / C(one + other, one), of all ways to deal the ranks (Mann and Whitney 1947).
+pub fn separation_by_chance(one: usize, other: usize) -> f64 {
+    let ways = (1..=one).fold(1.0, |ways, k| ways * (other + k) as f64 / k as f64);
+    (2.0 / ways).min(1.0)
 }
 
 /// Wilson's 95 % interval of a share of successes (Wilson 1927; `scipy.stats.binomtest(…).proportion_ci(method="wilson")`);

@@ -183,7 +183,7 @@ fn parameters_may_sit_in_different_places() {
         let found = match assembly.policy.spec().placements[i] {
             Placement::Graph => "graph",
             Placement::Action => "action",
-            Placement::Fixed(_) => "fixed",
+            Placement::Fixed(_) | Placement::Built(_) => "fixed",
         };
         assert_eq!(found, expected, "{i}");
         assert_eq!(before[i] == after[i], i == 7, "{i}: {} {}", before[i], after[i]);

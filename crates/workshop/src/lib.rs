@@ -5,7 +5,9 @@
 
 pub mod design;
 mod error;
+mod folder;
 pub mod parts;
 pub mod tolerances;
 
 pub use error::WorkshopError;
+pub use folder::writable;

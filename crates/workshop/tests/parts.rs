@@ -6,49 +6,55 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use hwasp_core::{Dimension, parse_quantity};
+use hwasp_settings::{Item, Kind, described, written};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
-use hwasp_workshop::parts::{Bench, JointParts, Reason, SelectError, SpringCatalogue, TorsionSpring, select, unfit};
+use hwasp_workshop::parts::{JointParts, Reason, SelectError, SpringCatalogue, TorsionSpring, Workshop, select, unfit};
 
 const HEADER: &str = "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm";
 
 fn chosen(
     design: &[f64; DESIGN_LEN],
     catalogue: &SpringCatalogue,
-    bench: &Bench,
-) -> Result<Vec<JointParts>, SelectError> {
-    select(&HandDescription::default(), design, &HandRange::Large.bounds(), catalogue, bench)
+    workshop: &Workshop,
+) -> Result<[JointParts; 4], SelectError> {
+    select(&HandDescription::default(), design, &HandRange::Large.bounds(), catalogue, workshop)
 }
 
 fn catalogue(rows: &str) -> Result<SpringCatalogue, String> {
     SpringCatalogue::parse("mine.csv", format!("{HEADER}\n{rows}").as_bytes()).map_err(|error| error.to_string())
 }
 
-/// A spring that suits the bench as it is.
+/// A spring that suits the workshop as it is.
 fn spring() -> TorsionSpring {
     TorsionSpring { wire: 0.0004, outer: 0.0053, turns: 8.25, leg: 0.010, modulus: 207e9, strength: 2.5e9 }
 }
 
 #[test]
 fn each_limit_refuses() {
-    let (angle, bench) = (3.0, Bench::default());
-    assert_eq!(unfit(&spring(), angle, &bench), None);
+    let (angle, workshop) = (3.0, Workshop::default());
+    assert_eq!(unfit(&spring(), angle, &workshop), None);
     let stress = spring().stress(spring().rate() * angle);
     for (reason, narrower, just) in [
-        (Reason::Wide, Bench { coil_room: 0.00529, ..bench.clone() }, Bench { coil_room: 0.0053, ..bench.clone() }),
+        (
+            Reason::Wide,
+            Workshop { coil_room: 0.00529, ..workshop.clone() },
+            Workshop { coil_room: 0.0053, ..workshop.clone() },
+        ),
         (
             Reason::Long,
-            Bench { spring_room: 0.999 * spring().length_wound(angle), ..bench.clone() },
-            Bench { spring_room: 1.001 * spring().length_wound(angle), ..bench.clone() },
+            Workshop { spring_room: 0.999 * spring().length_wound(angle), ..workshop.clone() },
+            Workshop { spring_room: 1.001 * spring().length_wound(angle), ..workshop.clone() },
         ),
         (
             Reason::Tight,
-            Bench { axle: 1.001 * spring().inner_wound(angle) / 1.1, ..bench.clone() },
-            Bench { axle: 0.999 * spring().inner_wound(angle) / 1.1, ..bench.clone() },
+            Workshop { axle: 1.001 * spring().inner_wound(angle) / 1.1, ..workshop.clone() },
+            Workshop { axle: 0.999 * spring().inner_wound(angle) / 1.1, ..workshop.clone() },
         ),
         (
             Reason::Stressed,
-            Bench { stress_share: 0.999 * stress / 2.5e9, ..bench.clone() },
-            Bench { stress_share: 1.001 * stress / 2.5e9, ..bench.clone() },
+            Workshop { stress_share: 0.999 * stress / 2.5e9, ..workshop.clone() },
+            Workshop { stress_share: 1.001 * stress / 2.5e9, ..workshop.clone() },
         ),
     ] {
         assert_eq!(unfit(&spring(), angle, &narrower), Some(reason));
@@ -63,12 +69,12 @@ fn each_limit_refuses() {
 #[test]
 fn the_nearest_parts_are_found() {
     let (catalogue, hand) = (SpringCatalogue::built_in().unwrap(), HandDescription::default());
-    let fine = Bench { hole_pitch: 9f64.to_radians(), springs: 1, spring_room: 0.008, ..Bench::default() };
-    for (design, bench) in [PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE]
+    let fine = Workshop { hole_pitch: 9f64.to_radians(), springs: 1, spring_room: 0.008, ..Workshop::default() };
+    for (design, workshop) in [PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE]
         .into_iter()
-        .flat_map(|design| [(design, Bench::default()), (design, fine.clone())])
+        .flat_map(|design| [(design, Workshop::default()), (design, fine.clone())])
     {
-        for (kind, found) in chosen(&design, &catalogue, &bench).unwrap().iter().enumerate() {
+        for (kind, found) in chosen(&design, &catalogue, &workshop).unwrap().iter().enumerate() {
             let (stiffness, preload) = (design[4 + kind], design[8 + kind]);
             let off = |k: f64, p: f64| {
                 let at = |i: u32| 1.57 * f64::from(i) / 50.0;
@@ -76,14 +82,14 @@ fn the_nearest_parts_are_found() {
             };
             let mut least = f64::INFINITY;
             for entry in &catalogue.springs {
-                for hole in 0..bench.holes() {
-                    let mut p = f64::from(hole) * bench.hole_pitch - entry.leg_angle;
+                for hole in 0..workshop.holes() {
+                    let mut p = f64::from(hole) * workshop.hole_pitch - entry.leg_angle;
                     while p < -1e-9 {
                         p += TAU;
                     }
-                    let k = f64::from(bench.springs) * entry.spring.rate();
+                    let k = f64::from(workshop.springs) * entry.spring.rate();
                     let within = (0.002..0.012).contains(&k) && (1e-6..4.0).contains(&p);
-                    if within && unfit(&entry.spring, p + 1.57, &bench).is_none() {
+                    if within && unfit(&entry.spring, p + 1.57, &workshop).is_none() {
                         least = least.min(off(k, p));
                     }
                 }
@@ -91,16 +97,18 @@ fn the_nearest_parts_are_found() {
             assert!((found.torque_error - least).abs() < 1e-12, "{} {}: {least}", found.joint, found.torque_error);
             assert!((off(found.built.stiffness, found.built.preload) - least).abs() < 1e-12);
             // What is told of the spring is what the design has.
-            assert!((found.built.stiffness - f64::from(bench.springs) * found.spring.rate).abs() < 1e-15);
-            let turned = f64::from(found.spring.hole) * bench.hole_pitch - found.spring.leg_angle;
+            assert!((found.built.stiffness - f64::from(workshop.springs) * found.spring.rate).abs() < 1e-15);
+            let turned = f64::from(found.spring.hole) * workshop.hole_pitch - found.spring.leg_angle;
             assert!(
                 (turned - found.built.preload).rem_euclid(TAU).min((found.built.preload - turned).rem_euclid(TAU))
                     < 1e-9
             );
-            assert!(found.spring.stress_share <= bench.stress_share && found.spring.length_wound <= bench.spring_room);
-            assert!(found.spring.inner_wound >= 1.1 * bench.axle);
+            assert!(
+                found.spring.stress_share <= workshop.stress_share && found.spring.length_wound <= workshop.spring_room
+            );
+            assert!(found.spring.inner_wound >= 1.1 * workshop.axle);
             // Half a step of the groove, half a hole with a spring of a few per cent.
-            assert!((found.built.radius - design[kind]).abs() <= 0.5 * bench.radius_step + 1e-12);
+            assert!((found.built.radius - design[kind]).abs() <= 0.5 * workshop.radius_step + 1e-12);
             assert_eq!(found.joints, if kind < 2 { 1 } else { 2 });
         }
     }
@@ -110,13 +118,15 @@ fn the_nearest_parts_are_found() {
 /// A radius on its limit goes to the next groove inside.
 #[test]
 fn grooves_stay_within_the_limits() {
-    let (catalogue, bench) = (SpringCatalogue::built_in().unwrap(), Bench::default());
+    let (catalogue, workshop) = (SpringCatalogue::built_in().unwrap(), Workshop::default());
     let mut design = SMALL_CENTRE;
     (design[0], design[1]) = (0.012, 0.002);
-    let found = chosen(&design, &catalogue, &bench).unwrap();
-    assert!((found[0].built.radius - 0.01195).abs() < 1e-9 && (found[1].built.radius - 0.00205).abs() < 1e-9);
+    let found = chosen(&design, &catalogue, &workshop).unwrap();
+    assert!((found[0].built.radius - 0.01195).abs() < 1e-9 && (found[1].built.radius - 0.0021).abs() < 1e-9);
+    // A groove of 1.85 mm would leave 0.55 mm around the hole for an axle of 2.5 mm.
+    assert!((found[1].pulley.groove_radius - workshop.least_groove()).abs() < 1e-9);
     assert!((found[0].pulley.groove_radius - 0.01175).abs() < 1e-9);
-    let coarse = Bench { radius_step: 0.001, ..bench };
+    let coarse = Workshop { radius_step: 0.001, ..workshop };
     let limits = HandRange::Small.bounds();
     let narrow = limits.map(|(lo, hi)| (0.5 * (lo + hi) - 0.1 * (hi - lo), 0.5 * (lo + hi) + 0.1 * (hi - lo)));
     let error = select(&HandDescription::default(), &SMALL_CENTRE, &narrow, &catalogue, &coarse).unwrap_err();
@@ -134,7 +144,7 @@ fn a_catalogue_without_a_spring_for_a_joint() {
     ];
     let text = format!("{HEADER},strength_mpa\n{}", rows.join("\n"));
     let catalogue = SpringCatalogue::parse("mine.csv", text.as_bytes()).unwrap();
-    let error = chosen(&PAPER_HWASP, &catalogue, &Bench::default()).unwrap_err();
+    let error = chosen(&PAPER_HWASP, &catalogue, &Workshop::default()).unwrap_err();
     insta::assert_snapshot!(error);
 }
 
@@ -186,27 +196,51 @@ fn every_wrong_row_is_told_with_its_line() {
     insta::assert_snapshot!(transcript);
 }
 
+/// A supplier's list with prices and stocks was refused, and so was told nothing of but its first further column.
 #[test]
-fn the_workshop_is_set_within_its_limits() {
-    let mut bench = Bench::default();
-    for given in
-        ["axle=3 mm", "hole_pitch=\"10 deg\"", " springs = 1 ", "stress_share=0.5", "line=0.3mm", "coil_room=2 cm"]
-    {
-        bench.set(given).unwrap();
-    }
-    assert_eq!((bench.axle, bench.springs, bench.stress_share, bench.holes()), (0.003, 1, 0.5, 36));
-    let before = bench.clone();
-    let told = [
-        "axle",
-        "axel=3 mm",
-        "axle=3",
-        "axle=300 mm",
-        "axle=nan mm",
-        "springs=1.5",
-        "hole_pitch=17 deg",
-        "springs=2 N",
-    ]
-    .map(|given| bench.set(given).unwrap_err().to_string());
-    assert_eq!(bench, before);
-    insta::assert_snapshot!(told.join("\n"));
+fn further_columns_are_ignored_and_told() {
+    let rows = "a,0.4,5.3,8.25,90,10,1.20,300\n";
+    let read = |more: &str| SpringCatalogue::parse("mine.csv", format!("{HEADER},{more}\n{rows}").as_bytes());
+    let catalogue = read("price_eur,stock").unwrap();
+    assert_eq!(
+        (catalogue.springs.len(), &catalogue.ignored[..]),
+        (1, &["price_eur".to_owned(), "stock".to_owned()][..])
+    );
+    assert_eq!(catalogue.remark().unwrap(), "columns of mine.csv that are not needed: `price_eur`, `stock`");
+    assert_eq!(SpringCatalogue::built_in().unwrap().remark(), None);
+    // A slip in a column that may be missing would change the springs without a word.
+    let error = read("stock,modulus_gp").unwrap_err().to_string();
+    assert!(
+        error.contains("column `modulus_gp` is none of") && error.contains("did you mean `modulus_gpa`?"),
+        "{error}"
+    );
+    // What is there already is no slip.
+    assert_eq!(read("turn,parts").unwrap().ignored, ["turn", "parts"]);
+}
+
+/// Bench and print files had a description each, and docs/parts.md a third one. This table is the one description.
+#[test]
+fn the_table_of_the_workshop_is_its_description() {
+    let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/parts.md")).unwrap();
+    let rows: Vec<String> = (described(&mut Workshop::default()).into_iter())
+        .zip(written(&mut Workshop::default()).0)
+        .map(|(field, (key, default))| {
+            let (unit, to_si, dimension) = match field.kind {
+                Kind::Quantity(Dimension::Length, _) => (" mm", 1e-3, Dimension::Length),
+                Kind::Quantity(dimension, _) => (" deg", 1f64.to_radians(), dimension),
+                _ => ("", 1.0, Dimension::None),
+            };
+            let shown = |si: f64| (si / to_si * 1e9).round() / 1e9;
+            let default = match default {
+                Item::Text(text) => shown(parse_quantity(&text, dimension).unwrap()).to_string(),
+                number => number.to_string(),
+            };
+            let limits = match field.kind {
+                Kind::Quantity(_, [lo, hi]) => format!("{} to {}{unit}", shown(lo), shown(hi)),
+                _ => field.limits,
+            };
+            format!("| `{key}` | {default}{unit} | {} | {limits} |", field.meaning)
+        })
+        .collect();
+    assert!(docs.contains(&format!("|---|---|---|---|\n{}\n\n", rows.join("\n"))), "{}", rows.join("\n"));
 }

@@ -11,7 +11,7 @@ use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
 use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, train, train_from};
 use hwasp_workshop::parts::{
-    Bench, PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, snap,
+    PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, Workshop, snap,
 };
 
 fn empty(name: &str) -> PathBuf {
@@ -47,7 +47,7 @@ fn run() -> (Assembly, Vec<f32>) {
 }
 
 fn snapped(assembly: &Assembly, params: &[f32]) -> Snapped {
-    snap(assembly, params, &SpringCatalogue::built_in().unwrap(), &Bench::default()).unwrap()
+    snap(assembly, params, &SpringCatalogue::built_in().unwrap(), &Workshop::default()).unwrap()
 }
 
 fn list(assembly: &Assembly, params: &[f32], executor: &dyn Executor) -> PartsList {

@@ -1,6 +1,6 @@
 //! `hwasp` with one problem more: a lamp on an arm that a spring should carry.
 //!
-//! Every command of hwasp works on it (`train`, `eval`, `compare`, `graph` …); `help` lists them.
+//! Every command of hwasp works on it (`train`, `eval`, `compare`, `report`, `export` …); `help` lists them.
 
 #![forbid(unsafe_code)]
 
@@ -13,26 +13,62 @@ mod tests;
 use std::process::ExitCode;
 
 use hwasp_core::{Dimension, Environment, Law, Robot};
-use hwasp_training::Problems;
-use hwasp_training::spec::{OwnProblem, Setting};
+use hwasp_experiment::{Catalogue, CatalogueError};
+use hwasp_problem::{AnyError, Built, Problem, Role, Words};
+use hwasp_settings::{Fields, Settings};
 
 use arm::Arm;
 use hold::Hold;
 use spring::Spring;
 
-fn main() -> ExitCode {
-    hwasp_cli::run([problem()])
+fn main() -> Result<ExitCode, CatalogueError> {
+    Ok(hwasp_cli::run(&catalogue()?))
 }
 
-/// The problem `lamp` of experiment files. What they may set in `[task]` beside the horizon has its limits here.
-fn problem() -> OwnProblem {
-    let goal = Setting { name: "goal", dimension: Dimension::Angle, default: 0.6, limits: -1.2..=1.2 };
-    OwnProblem::new("lamp", [goal], |[goal]| {
-        let law = Law::new(Spring::new()?);
-        let arm = Arm::default();
+/// What experiments may name: the problems of hwasp, and this one.
+fn catalogue() -> Result<Catalogue, CatalogueError> {
+    hwasp_builtin::catalogue().with(Lamp)
+}
+
+/// The problem `lamp` of experiment files.
+pub(crate) struct Lamp;
+
+/// What experiments may set in `[task]`, beside the horizon.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LampSettings {
+    /// The angle at which the lamp is held, rad from upright.
+    goal: f64,
+}
+
+impl Settings for LampSettings {
+    /// Each setting once, with its limits: from this hwasp reads it, names what is wrong, and completes it in editors.
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        fields.quantity("goal", &mut self.goal, Dimension::Angle, -1.2..=1.2, "the angle at which the lamp is held");
+    }
+}
+
+impl Problem for Lamp {
+    type Settings = LampSettings;
+
+    fn name(&self) -> &'static str {
+        "lamp"
+    }
+
+    /// The settings of an experiment that says nothing.
+    fn defaults(&self) -> LampSettings {
+        LampSettings { goal: 0.6 }
+    }
+
+    fn build(&self, settings: &LampSettings) -> Result<Built, AnyError> {
+        let (law, arm, goal) = (Law::new(Spring::new()?), Arm::default(), settings.goal);
         // One for each thread; `horizon` is that of the experiment.
         let make = move |horizon| -> Box<dyn Environment> { Box::new(Robot::new(arm.clone(), Hold { goal }, horizon)) };
+        // For reports and exports.
+        let words =
+            Words::about("A motor holds a lamp on an arm, beside a spring. The spring's stiffness is the design.")
+                .with(Role::Command, &[("motor", "torque of the motor")])
+                .with(Role::Effort, &[("torque", "torque of motor and spring on the arm")]);
         // What is best is known here, and reports say how near a design is; leave it out where it is not.
-        Ok(Problems { optimum: vec![Some(Spring::BALANCE)], ..Problems::new(law, make) })
-    })
+        Ok(Built { optimum: vec![Some(Spring::BALANCE)], words, ..Built::new(law, make) })
+    }
 }

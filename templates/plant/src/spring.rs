@@ -58,9 +58,45 @@ impl Hardware for Spring {
     }
 
     /// The torque on the arm, N·m. Written once over a number type: the simulator runs it, and training differentiates it.
-    /// So it must not branch on values; `min`, `max`, `abs` and `clamp` of `Scalar` take the place of branches.
+    ///
+    /// So it must not branch on values. `if angle > limit` does not compile, and the compiler's advice, `T: PartialOrd`, leads
+    /// nowhere: what is recorded once for training has to be right for every value. Say it without a branch:
+    ///
+    /// | instead of | write |
+    /// |---|---|
+    /// | a force that only pulls | `force.max(T::constant(0.0))` |
+    /// | a motor with limits | `motor.clamp(-5.0, 5.0)` |
+    /// | friction against the motion | `-(speed * 50.0).tanh() * FRICTION` |
+    /// | a stop that pushes back beyond `LIMIT` | `-(angle - LIMIT).max(T::constant(0.0)) * STOP` |
+    /// | one formula below `LIMIT` and another above | `here + ((angle - LIMIT) * 50.0).sigmoid() * (there - here)` |
     fn effort<T: Scalar>(&self, design: &[T], command: &[T], state: &[T], effort: &mut [T]) {
         let (stiffness, motor, angle) = (design[0], command[0], state[0]);
         effort[0] = motor - stiffness * (ANCHOR * HOOK) * angle.sin();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hwasp_core::{Law, Plant};
+
+    use super::*;
+    use crate::arm::Arm;
+
+    /// A fact that is known without any training: law and plant agree on it. Find one for your mechanism; it finds wrong signs
+    /// and units.
+    #[test]
+    fn the_balanced_arm_stays_where_it_is_put() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        let (law, mut arm) = (Law::new(Spring::new()?), Arm::default());
+        for start in [-1.0, 0.2, 0.7] {
+            arm.place(start);
+            let (mut state, mut effort) = ([0.0; 2], [0.0]);
+            for _ in 0..100 {
+                arm.state(&mut state);
+                law.effort(&[Spring::BALANCE], &[0.0], &state, &mut effort);
+                arm.advance(&effort, &[0.0]);
+            }
+            assert!((arm.angle() - start).abs() < 1e-6, "put at {start} rad, it went to {} rad", arm.angle());
+        }
+        Ok(())
     }
 }

@@ -3,10 +3,11 @@
 use hwasp_experiment::Catalogue;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::Threads;
-use hwasp_study::{self as study, CellResult, CompareError, Comparison, Contender, Grid};
+use hwasp_runs::RunError;
+use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome};
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
@@ -22,15 +23,27 @@ pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failu
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: 0..args.seeds };
-    let experiment =
-        run_grid(&grid, catalogue, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?.0;
+    let ran = run_grid(&grid, catalogue, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?;
     if !args.quiet {
-        output::print(&experiment)?;
+        output::print(&ran.text)?;
     }
-    Ok(())
+    ran.failed.map_or(Ok(()), Err)
 }
 
-/// Runs a grid into a folder and writes its tables and pictures. Returns what to print, and the cells.
+/// A grid that came to its end.
+pub(super) struct Ran {
+    /// What to print.
+    pub(super) text: String,
+    /// What became of the cells.
+    pub(super) outcome: Outcome,
+    /// Why the program ends with a failure all the same: trainings failed.
+    pub(super) failed: Option<Failure>,
+}
+
+/// Runs a grid into a folder and writes its tables and pictures.
+///
+/// # Errors
+/// Where it was stopped, or something could not be written; not where trainings failed.
 pub(super) fn run_grid(
     grid: &Grid,
     catalogue: &Catalogue,
@@ -39,30 +52,41 @@ pub(super) fn run_grid(
     threshold: Option<f64>,
     quiet: bool,
     stop: &AtomicBool,
-) -> Result<(String, Vec<CellResult>), Failure> {
+) -> Result<Ran, Failure> {
     // Everything that was asked for is checked before the first cell begins.
     let cells = grid.cells(folder, catalogue).map_err(Failure::input)?;
     let first = cells.first().ok_or_else(|| Failure::input("there is nothing to compare"))?;
     let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
     let progress = GridProgress::new(quiet, threads);
     let executor = Threads::new(threads)?;
-    let results = study::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
-        CompareError::Other { .. } => Failure::input(error),
+    let outcome = study::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
+        CompareError::Other { .. } | CompareError::Run(RunError::Edited { .. }) => Failure::input(error),
         _ => error.into(),
     })?;
     progress.finish();
-    let missing = cells.len() - results.len();
-    let unfinished = || Failure::from(Unfinished { missing, folder: folder.to_owned() });
-    if results.is_empty() {
-        return Err(unfinished());
+    let comparison = Comparison::new(&first.experiment(), &outcome, threshold)?;
+    comparison.write(folder, &outcome.finished, &first.plot_options())?;
+    if let (Some(others), false) = (comparison.others(), quiet) {
+        output::remark(&others);
     }
-    let comparison = Comparison::new(&first.experiment(), &results, threshold)?;
-    comparison.write(folder, &results, &first.plot_options())?;
-    if missing > 0 {
-        return Err(unfinished());
+    if outcome.unfinished() > 0 {
+        let unfinished = Unfinished { missing: outcome.unfinished(), cells: cells.len(), folder: folder.to_owned() };
+        return Err(if stop.load(Ordering::Relaxed) { Failure::interrupted(unfinished) } else { unfinished.into() });
     }
-    let files = "table.md, table.csv, comparison.json, curves.svg, time.svg";
-    Ok((format!("{}\n{}: {files}\n", comparison.markdown(), folder.display()), results))
+    let pictures = if outcome.finished.is_empty() { "" } else { ", curves.svg, time.svg" };
+    let text =
+        format!("{}\n{}: table.md, table.csv, comparison.json{pictures}\n", comparison.markdown(), folder.display());
+    let failed = outcome.missing.iter().find(|cell| cell.seed.failed).map(|first| {
+        let failed = FailedCells { failed: outcome.failed(), cells: cells.len(), folder: folder.to_owned() };
+        let cell = cells.iter().find(|cell| cell.label == first.label && cell.seed == first.seed.seed);
+        let cell = cell.map_or_else(|| folder.to_owned(), |cell| cell.path.clone());
+        Failure::from(failed).hint(&format!(
+            "the same command does not repeat them, they would fail again; take other settings and another folder, or remove a \
+             cell's folder, {} for one, to train it anew",
+            cell.display()
+        ))
+    });
+    Ok(Ran { text, outcome, failed })
 }
 
 /// All that the machine has: cells do not wait for each other.
@@ -70,10 +94,20 @@ fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// Cells that did not come to their end.
+/// Cells that did not come to their end, and can.
 #[derive(Debug, thiserror::Error)]
-#[error("{missing} of the cells did not finish; the same command goes on with them, into {}", folder.display())]
+#[error("{missing} of {cells} cells did not finish; the same command goes on with them, into {}", folder.display())]
 struct Unfinished {
     missing: usize,
+    cells: usize,
+    folder: PathBuf,
+}
+
+/// Cells whose training failed.
+#[derive(Debug, thiserror::Error)]
+#[error("{failed} of {cells} trainings failed; {} says why", folder.join("table.md").display())]
+struct FailedCells {
+    failed: usize,
+    cells: usize,
     folder: PathBuf,
 }

@@ -1,12 +1,22 @@
 //! `hwasp eval`.
 
 use hwasp_experiment::Catalogue;
-use hwasp_training::{EvaluateError, evaluate, evaluate_native};
+use hwasp_training::{EvaluateError, Evaluation, evaluate, evaluate_native};
+use serde::Serialize;
 
 use super::{executor, saved_run};
 use crate::args::EvalArgs;
 use crate::failure::Failure;
 use crate::{output, report};
+
+/// The figures for scripts, and the values of `--set` that they are for.
+#[derive(Serialize)]
+struct Judged<'a> {
+    #[serde(flatten)]
+    evaluation: &'a Evaluation,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    under: &'a [String],
+}
 
 pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &args.set, catalogue)?;
@@ -27,9 +37,10 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
         output::remark(&format!("note: {task} knows neither success nor shapes"));
     }
     let text = if args.json {
-        format!("{}\n", serde_json::to_string_pretty(&evaluation)?)
+        let judged = Judged { evaluation: &evaluation, under: &args.set };
+        format!("{}\n", serde_json::to_string_pretty(&judged)?)
     } else {
-        report::evaluation(&evaluation, args.per_shape)
+        report::under(&args.set) + &report::evaluation(&evaluation, args.per_shape)
     };
     Ok(output::print(&text)?)
 }

@@ -15,11 +15,15 @@ pub(crate) fn run(args: &ExportArgs, catalogue: &Catalogue) -> Result<(), Failur
     if kinds.is_empty() {
         (kinds, left_out) = Kind::ALL.into_iter().partition(|kind| kind.is_of(source.spec()));
     }
-    let files = export(&source, &kinds, args.samples, &out).map_err(|error| match error {
+    let exported = export(&source, &kinds, args.samples, &out);
+    let files = exported.map_err(|error| match error {
         ExportError::Run(error) => Failure::input(error),
         ExportError::Write(error) => error.into(),
         ExportError::Rollout(error) => error.into(),
         error => Failure::input(error),
     })?;
+    if let Some(chosen) = source.printed_for() {
+        output::remark(&report::parts::printed_for(chosen, &args.run));
+    }
     Ok(output::print(&report::exported(source.spec(), &out, &files, &left_out))?)
 }

@@ -3,44 +3,41 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use hwasp_settings::text::printable;
+
 use crate::args::{InitArgs, TemplateArg};
 use crate::failure::Failure;
 use crate::output;
-use crate::project::{self, Origin, Project, ProjectError, Template};
+use crate::project::{self, Lock, Project, ProjectError, Template};
 
 pub(crate) fn run(args: &InitArgs) -> Result<(), Failure> {
     let template = match args.template {
         TemplateArg::Plant => Template::Plant,
         TemplateArg::Mjcf => Template::Mjcf,
     };
-    let origin = match &args.path {
-        Some(path) => project::checkout(path).map_err(failed)?,
-        None => std::env::current_exe().map_or(Origin::Repository, |program| project::origin_of(&program)),
-    };
-    let project = Project::new(&args.folder, args.name.as_deref(), template, origin).map_err(failed)?;
-    project.write().map_err(failed)?;
+    let checkout = args.path.as_deref().map_or_else(project::own_checkout, project::checkout).map_err(failed)?;
+    let project = Project::new(&args.folder, args.name.as_deref(), template, checkout).map_err(failed)?;
+    if project.write().map_err(failed)? == Lock::FirstBuild {
+        output::remark("note: Cargo could not be asked about Cargo.lock: the first build writes it anew");
+    }
     Ok(output::print(&next(&project, &args.folder, template))?)
 }
 
 /// What was made, and what to do with it.
 fn next(project: &Project, folder: &Path, template: Template) -> String {
-    let from = match project.origin() {
-        Origin::Checkout(path) => format!("built with the checkout {}", path.display()),
-        Origin::Repository => {
-            format!("built with {}; --path CHECKOUT takes a checkout", env!("CARGO_PKG_REPOSITORY"))
-        }
-    };
+    let checkout = printable(&project.checkout().display().to_string());
     let mut files = vec![
         ("src/spring.rs", "the law: a spring that should carry a lamp; write yours here"),
         ("src/arm.rs", "the plant: the arm that it carries"),
         ("src/hold.rs", "the task: bring the lamp to an angle and hold it"),
-        ("src/tests.rs", "derivatives, environment, a known fact, a short training"),
+        ("src/tests.rs", "derivatives, environment, a short training: they hold for any problem"),
         ("experiment.toml", "the training"),
     ];
     if template == Template::Mjcf {
         files.insert(1, ("mechanism.xml", "the arm's physics, in MuJoCo"));
     }
-    let mut text = format!("{} is a project in {}, {from}\n\n", project.name(), folder.display());
+    let mut text =
+        format!("{} is a project in {}, built with the checkout {checkout}\n\n", project.name(), folder.display());
     for (file, what) in files {
         let _ = writeln!(text, "  {file:<16} {what}");
     }
@@ -67,7 +64,8 @@ fn failed(error: ProjectError) -> Failure {
             "nothing was written; name a folder that is empty, or one that does not exist"
         }
         ProjectError::Name { .. } => "name it with --name, such as --name lamp-arm",
-        ProjectError::NoCheckout { .. } => "name the folder that holds hwasp's Cargo.lock, or leave --path out",
+        ProjectError::NoCheckout { .. } => "name the folder that holds hwasp's Cargo.lock",
+        ProjectError::NoSources => "name a checkout with --path, such as --path ../hwasp",
         ProjectError::Io { action: "create", .. } => {
             "name a folder that is there and may be written, or a new one in such"
         }

@@ -1,29 +1,72 @@
 //! `hwasp list`.
 
 use std::fmt::Write;
+use std::io::IsTerminal;
 
 use hwasp_experiment::{Catalogue, Layers, resolve};
 
 use crate::failure::Failure;
 use crate::output;
 
+/// The least room for a description: below, a terminal breaks the lines itself.
+const NARROWEST: usize = 24;
+
 pub(crate) fn run(catalogue: &Catalogue) -> Result<(), Failure> {
     let presets = catalogue.presets();
     let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
+    // Scripts get a line for each.
+    let terminal = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
+    let room = terminal.map_or(usize::MAX, |(columns, _)| usize::from(columns.0).saturating_sub(width + 2));
     let mut text = String::new();
+    let mut entry = |name: &str, about: &str| {
+        let lines = wrapped(about, room);
+        let _ = writeln!(text, "{name:width$}  {}", lines.join(&format!("\n{:width$}  ", "")));
+    };
     for preset in &presets {
         let layers = Layers::from_text(preset.name, preset.text)?;
         let experiment = resolve(layers, None, catalogue)?;
-        let _ = writeln!(text, "{:width$}  {}", preset.name, experiment.description);
+        entry(preset.name, &experiment.description);
     }
     for problem in catalogue.problems().iter().filter(|problem| problem.presets().is_empty()) {
-        let about = "a problem of this program";
-        let _ = writeln!(
-            text,
-            "{:width$}  {about}: task.problem = \"{}\" in an experiment file",
-            problem.name(),
-            problem.name()
-        );
+        let name = problem.name();
+        entry(name, &format!("a problem of this program: task.problem = \"{name}\" in an experiment file"));
     }
     Ok(output::print(&text)?)
+}
+
+/// The words of a text in lines of at most so many characters; a longer word has a line of its own.
+fn wrapped(text: &str, room: usize) -> Vec<String> {
+    if room < NARROWEST {
+        return vec![text.to_owned()];
+    }
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("there is a first line");
+        if line.is_empty() {
+            line.push_str(word);
+        } else if line.chars().count() + 1 + word.chars().count() <= room {
+            line.push(' ');
+            line.push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At 120 columns the terminal broke the descriptions in the middle of words.
+    #[test]
+    fn lines_end_between_words() {
+        let text = "Ten parallel springs under 0.3 kg, with the paper's settings";
+        assert_eq!(wrapped(text, 30), ["Ten parallel springs under 0.3", "kg, with the paper's settings"]);
+        assert_eq!(wrapped(text, usize::MAX), [text]);
+        assert_eq!(
+            wrapped("a-word-that-is-longer-than-its-line and", 24),
+            ["a-word-that-is-longer-than-its-line", "and"]
+        );
+    }
 }

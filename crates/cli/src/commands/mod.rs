@@ -14,6 +14,7 @@ pub(crate) mod plot;
 pub(crate) mod replay;
 pub(crate) mod report;
 pub(crate) mod reproduce;
+pub(crate) mod schema;
 pub(crate) mod tolerances;
 pub(crate) mod train;
 

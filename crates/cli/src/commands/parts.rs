@@ -6,8 +6,9 @@ use std::path::Path;
 use hwasp_core::Executor;
 use hwasp_runs::{Provenance, RunError};
 use hwasp_workshop::parts::{
-    Bench, Judge, PARTS, PartsError, PartsWorth, SHEET, SpringCatalogue, TUNED, Tuning, TuningFolder, snap,
+    BUILD, Judge, PARTS, PartsError, PartsWorth, SHEET, SpringCatalogue, TUNED, Tuning, TuningFolder, Workshop, snap,
 };
+use hwasp_workshop::writable;
 
 use super::train::into_folder;
 use super::{executor, saved_run, stop_on_signal, typed};
@@ -18,17 +19,20 @@ use crate::{log, output, report};
 pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let springs = args.catalogue.as_deref().map_or_else(SpringCatalogue::built_in, SpringCatalogue::open);
     let springs = springs.map_err(Failure::input)?;
-    let mut bench = Bench::default();
-    args.bench.iter().try_for_each(|given| bench.set(given)).map_err(Failure::input)?;
+    let workshop = Workshop::with(&args.bench).map_err(Failure::input)?;
     let saved = saved_run(&args.run, &[], catalogue)?;
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
     let asked = args.held_out.asked(&assembly.experiment().train);
-    let snapped = snap(assembly, &params, &springs, &bench).map_err(failure)?;
-    let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
+    let snapped = snap(assembly, &params, &springs, &workshop).map_err(failure)?;
+    let folder = args.out.clone().unwrap_or_else(|| args.run.join(BUILD));
 
-    // What cannot be begun is known before the work begins.
+    // What cannot be begun or written is known before the work begins.
     let tuning = args.fine_tune.map(|steps| Tuning::new(assembly, &params, &snapped.built, steps, asked));
     let tuning = tuning.transpose().map_err(failure)?;
+    writable(&folder)?;
+    if let Some(remark) = springs.remark() {
+        output::remark(&remark);
+    }
     let path = folder.join(TUNED);
     let provenance = Provenance::new(typed(), args.held_out.threads.get(), assembly.experiment().seed);
     let tuning = tuning.map(|tuning| Ok((tuning.folder(&path, provenance)?, tuning))).transpose();
@@ -42,10 +46,11 @@ pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure
         Some((there, tuning)) => tuned(judge, there, &tuning, &path, &*executor)?,
     };
     let list = snapped.list(assembly, worth);
+    // What was found is told even if a disk is full by now.
+    output::print(&report::parts::parts(&list))?;
     list.write(&folder)?;
     let further = if list.worth.tuned.is_some() { ", tuned/" } else { "" };
-    let written = format!("\n  {}: {PARTS}, {SHEET}{further}\n", folder.display());
-    Ok(output::print(&(report::parts::parts(&list) + &written))?)
+    Ok(output::print(&format!("\n  {}: {PARTS}, {SHEET}{further}\n", folder.display()))?)
 }
 
 /// Trains the controller further, unless that is done already, and simulates it.

@@ -25,7 +25,7 @@ fn draw(_: &PlayArgs, _: &SavedRun, _: &[f32]) -> Result<(), Failure> {
 
 #[cfg(feature = "renderer")]
 fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure> {
-    use crate::output;
+    use crate::{output, report};
 
     let spec = saved.assembly().experiment();
     let options = play::PlayOptions {
@@ -39,9 +39,10 @@ fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure
     if options.native {
         title.push_str(" · native tendons");
     }
-    for assignment in &args.set {
-        title.push_str(" · ");
-        title.push_str(assignment);
+    let under = report::under(&args.set);
+    if !under.is_empty() {
+        title.push_str(&format!(" · {}", under.trim().trim_end_matches(':')));
+        output::print(&under)?;
     }
     let out = args.out.clone().unwrap_or_else(|| args.run.join("play"));
     let mut told = Ok(());

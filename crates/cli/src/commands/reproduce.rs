@@ -23,15 +23,18 @@ pub(crate) fn run(args: &ReproduceArgs, catalogue: &Catalogue) -> Result<(), Fai
         args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("reproduce-{}{quick}", figure.name)));
     output::remark(&format!("{}: {}", figure.name, figure.about));
     let stop = stop_on_signal()?;
+    let mut failed = None;
     for experiment in figure.experiments {
         let grid = figure.grid(experiment, args.quick, catalogue).map_err(Failure::input)?;
         let folder = folder.join(experiment.replace('/', "-"));
-        let (text, cells) = run_grid(&grid, catalogue, &folder, args.threads, None, false, &stop)?;
-        output::print(&text)?;
-        let beside = figure.beside(experiment, &cells);
+        let ran = run_grid(&grid, catalogue, &folder, args.threads, None, false, &stop)?;
+        output::print(&ran.text)?;
+        // Trainings that failed keep nobody from the other experiments.
+        failed = failed.or(ran.failed);
+        let beside = figure.beside(experiment, &ran.outcome);
         if !beside.is_empty() {
             output::print(&format!("\n{beside}\n"))?;
         }
     }
-    Ok(())
+    failed.map_or(Ok(()), Err)
 }

@@ -3,6 +3,7 @@
 use hwasp_experiment::Catalogue;
 use hwasp_training::EvaluateError;
 use hwasp_workshop::tolerances::{PICTURES, TOLERANCES, errors_of, tolerances};
+use hwasp_workshop::writable;
 
 use super::{executor, saved_run};
 use crate::args::TolerancesArgs;
@@ -15,6 +16,9 @@ pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Fa
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
     let errors = errors_of(assembly, &params, &args.error).map_err(Failure::input)?;
     let asked = args.held_out.asked(&assembly.experiment().train);
+    let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
+    // What cannot be written is known before the work begins.
+    writable(&folder)?;
     let executor = executor(args.held_out.threads)?;
     let mut counter = Counter::new("designs simulated");
     let found = tolerances(assembly, &params, &errors, asked, &*executor, &mut |done, all| counter.tell(done, all));
@@ -23,8 +27,8 @@ pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Fa
         EvaluateError::Assemble(error) => Failure::input(error),
         error => error.into(),
     })?;
-    let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
+    // What was found is told even if a disk is full by now.
+    output::print(&report::parts::tolerances(&found))?;
     found.write(&folder)?;
-    let written = format!("\n  {}: {TOLERANCES}, {}\n", folder.display(), PICTURES.join(", "));
-    Ok(output::print(&(report::parts::tolerances(&found) + &written))?)
+    Ok(output::print(&format!("\n  {}: {TOLERANCES}, {}\n", folder.display(), PICTURES.join(", ")))?)
 }

@@ -6,19 +6,16 @@ mod template;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
+use hwasp_settings::text::printable;
 use thiserror::Error;
 
 pub(crate) use self::template::Template;
 
-/// Where the crates are that a project is built with.
+/// The checkout on this machine that a project is built with.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Origin {
-    /// A checkout on this machine; its absolute path.
-    Checkout(PathBuf),
-    /// The repository on the network.
-    Repository,
-}
+pub(crate) struct Checkout(PathBuf);
 
 /// A project to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +23,7 @@ pub(crate) struct Project {
     folder: PathBuf,
     name: String,
     template: Template,
-    origin: Origin,
+    checkout: Checkout,
 }
 
 /// Why no project can be written. Nothing has changed then, unless a file could not be written.
@@ -60,6 +57,9 @@ pub(crate) enum ProjectError {
         /// The folder.
         path: PathBuf,
     },
+    /// A program that was taken out of its checkout.
+    #[error("this program does not lie in a checkout of hwasp, and a project is built with hwasp's sources")]
+    NoSources,
     /// The file system.
     #[error("cannot {action} {}: {source}", .path.display())]
     Io {
@@ -81,7 +81,7 @@ impl Project {
         folder: &Path,
         name: Option<&str>,
         template: Template,
-        origin: Origin,
+        checkout: Checkout,
     ) -> Result<Self, ProjectError> {
         let found = entries(folder)?;
         if !found.is_empty() {
@@ -89,7 +89,7 @@ impl Project {
         }
         let name = name.map_or_else(|| name::of_folder(folder), str::to_owned);
         name::check(&name)?;
-        Ok(Self { folder: folder.to_owned(), name, template, origin })
+        Ok(Self { folder: folder.to_owned(), name, template, checkout })
     }
 
     /// Its name as a package.
@@ -97,42 +97,59 @@ impl Project {
         &self.name
     }
 
-    /// Where the crates are that it is built with.
-    pub(crate) fn origin(&self) -> &Origin {
-        &self.origin
+    /// The path of the checkout that it is built with.
+    pub(crate) fn checkout(&self) -> &Path {
+        &self.checkout.0
     }
 
-    /// Writes it.
-    pub(crate) fn write(&self) -> Result<(), ProjectError> {
-        for (path, text) in self.template.files(&self.name, &self.origin)? {
+    /// Writes it. `Cargo.lock` has the versions that hwasp is tested with, which are on this machine already.
+    pub(crate) fn write(&self) -> Result<Lock, ProjectError> {
+        for (path, text) in self.template.files(&self.name, &self.checkout)? {
             let path = self.folder.join(path);
             if let Some(parent) = path.parent() {
                 fs::create_dir_all(parent).map_err(|source| io_error("create", parent, source))?;
             }
             fs::write(&path, text).map_err(|source| io_error("write", &path, source))?;
         }
-        if let Origin::Checkout(checkout) = &self.origin {
-            // The versions that hwasp is tested with; they are on this machine already.
-            let (from, to) = (checkout.join("Cargo.lock"), self.folder.join("Cargo.lock"));
-            if from.is_file() {
-                fs::copy(&from, &to).map_err(|source| io_error("write", &to, source))?;
-            }
+        let (from, to) = (self.checkout().join("Cargo.lock"), self.folder.join("Cargo.lock"));
+        if from.is_file() {
+            fs::copy(&from, &to).map_err(|source| io_error("write", &to, source))?;
         }
-        Ok(())
+        Ok(self.lock())
+    }
+
+    /// Lets Cargo take out of the copied `Cargo.lock` what this project does not use, and put the project in. No version changes.
+    fn lock(&self) -> Lock {
+        let mut cargo = Command::new("cargo");
+        cargo.args(["update", "--workspace", "--offline", "--quiet"]).current_dir(&self.folder).stdin(Stdio::null());
+        match cargo.output() {
+            Ok(output) if output.status.success() => Lock::Fits,
+            Ok(_) | Err(_) => Lock::FirstBuild,
+        }
     }
 }
 
-/// The checkout of hwasp at `path`, as an absolute path.
-pub(crate) fn checkout(path: &Path) -> Result<Origin, ProjectError> {
-    let no_checkout = || ProjectError::NoCheckout { path: path.to_owned() };
-    let absolute = path.canonicalize().map_err(|_| no_checkout())?;
-    if is_checkout(&absolute) { Ok(Origin::Checkout(absolute)) } else { Err(no_checkout()) }
+/// Whose `Cargo.lock` a new project has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lock {
+    /// Its own: it builds with `--locked`.
+    Fits,
+    /// That of the checkout, because Cargo could not be asked. The first build makes it the project's own.
+    FirstBuild,
 }
 
-/// The checkout that a program was built in, if it lies in the target folder of one; else the repository.
-pub(crate) fn origin_of(program: &Path) -> Origin {
+/// The checkout of hwasp at `path`, as an absolute path.
+pub(crate) fn checkout(path: &Path) -> Result<Checkout, ProjectError> {
+    let no_checkout = || ProjectError::NoCheckout { path: path.to_owned() };
+    let absolute = path.canonicalize().map_err(|_| no_checkout())?;
+    if is_checkout(&absolute) { Ok(Checkout(absolute)) } else { Err(no_checkout()) }
+}
+
+/// The checkout that this program was built in: the one in whose target folder it lies.
+pub(crate) fn own_checkout() -> Result<Checkout, ProjectError> {
+    let program = std::env::current_exe().unwrap_or_default();
     let checkout = program.ancestors().find(|folder| is_checkout(folder));
-    checkout.map_or(Origin::Repository, |folder| Origin::Checkout(folder.to_owned()))
+    checkout.map(|folder| Checkout(folder.to_owned())).ok_or(ProjectError::NoSources)
 }
 
 fn is_checkout(folder: &Path) -> bool {
@@ -149,7 +166,7 @@ fn entries(folder: &Path) -> Result<Vec<String>, ProjectError> {
     let mut found = Vec::new();
     for entry in entries {
         let entry = entry.map_err(|source| io_error("read", folder, source))?;
-        found.push(entry.file_name().to_string_lossy().into_owned());
+        found.push(printable(&entry.file_name().to_string_lossy()));
     }
     found.retain(|name| name != ".git");
     found.sort();

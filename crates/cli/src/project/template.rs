@@ -2,7 +2,7 @@
 
 use hwasp_experiment::EXPERIMENT;
 
-use super::{Origin, ProjectError};
+use super::{Checkout, ProjectError};
 
 macro_rules! text {
     ($path:literal) => {
@@ -23,15 +23,15 @@ pub(crate) enum Template {
 const COMMON: &[(&str, &str)] = &[
     (".gitignore", text!("gitignore")),
     (EXPERIMENT, text!("plant/experiment.toml")),
-    ("src/spring.rs", text!("plant/src/spring.rs")),
     ("src/hold.rs", text!("plant/src/hold.rs")),
 ];
 const MAIN: &str = text!("plant/src/main.rs");
+const SPRING: &str = text!("plant/src/spring.rs");
 const TESTS: &str = text!("plant/src/tests.rs");
 
 impl Template {
     /// Where the files lie in the project, and what is in them.
-    pub(super) fn files(self, name: &str, origin: &Origin) -> Result<Vec<(&'static str, String)>, ProjectError> {
+    pub(super) fn files(self, name: &str, checkout: &Checkout) -> Result<Vec<(&'static str, String)>, ProjectError> {
         let mut files: Vec<_> = COMMON.iter().map(|&(path, text)| (path, text.to_owned())).collect();
         let (manifest, about) = match self {
             Self::Plant => {
@@ -39,6 +39,7 @@ impl Template {
                     (".cargo/config.toml", text!("plant/.cargo/config.toml").to_owned()),
                     ("src/arm.rs", text!("plant/src/arm.rs").to_owned()),
                     ("src/main.rs", MAIN.to_owned()),
+                    ("src/spring.rs", SPRING.to_owned()),
                     ("src/tests.rs", TESTS.to_owned()),
                 ]);
                 (text!("plant/Cargo.toml.in"), "| `src/arm.rs` | the plant: the arm's physics |")
@@ -53,43 +54,31 @@ impl Template {
                     ("mechanism.xml", text!("mjcf/mechanism.xml").to_owned()),
                     ("src/arm.rs", text!("mjcf/src/arm.rs").to_owned()),
                     ("src/main.rs", fallible(MAIN)),
-                    ("src/tests.rs", fallible(TESTS)),
+                    ("src/spring.rs", fallible(SPRING)),
+                    ("src/tests.rs", TESTS.to_owned()),
                 ]);
                 let about = "| `mechanism.xml` | the arm's physics, as an MJCF file |\n| `src/arm.rs` | the plant: the engine, and \
                              where in it angle, speed and motor are |";
                 (text!("mjcf/Cargo.toml.in"), about)
             }
         };
-        files.push(("Cargo.toml", filled(manifest, name, origin)?));
+        files.push(("Cargo.toml", filled(manifest, name, checkout)?));
         files.push(("README.md", text!("README.md").replace("{{name}}", name).replace("{{plant}}", about)));
         Ok(files)
     }
 }
 
 /// A manifest for that name, whose crates come from there.
-fn filled(manifest: &str, name: &str, origin: &Origin) -> Result<String, ProjectError> {
-    const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
-    let about = match origin {
-        Origin::Checkout(_) => format!(
-            "# hwasp comes from a checkout on this machine. For a project that others build too, write\n\
-             # git = \"{REPOSITORY}\" for each path."
-        ),
-        Origin::Repository => "# Cargo.lock keeps the commit of hwasp that the first build finds.".to_owned(),
-    };
-    let mut manifest = manifest.replace("{{name}}", name).replace("{{source}}", &about);
-    for part in ["core", "diff", "training", "cli", "mujoco"] {
-        let from = match origin {
-            Origin::Checkout(checkout) => {
-                let path = checkout.join("crates").join(part);
-                let Some(path) = path.to_str() else {
-                    return Err(ProjectError::NoCheckout { path: checkout.clone() });
-                };
-                format!("path = {}", toml::Value::from(path))
-            }
-            Origin::Repository => format!("git = \"{REPOSITORY}\""),
+fn filled(manifest: &str, name: &str, checkout: &Checkout) -> Result<String, ProjectError> {
+    let about = "# hwasp comes from a checkout on this machine.";
+    let mut manifest = manifest.replace("{{name}}", name).replace("{{source}}", about);
+    for part in ["core", "diff", "problem", "settings", "builtin", "experiment", "training", "cli", "mujoco"] {
+        let path = checkout.0.join("crates").join(part);
+        let Some(path) = path.to_str() else {
+            return Err(ProjectError::NoCheckout { path: checkout.0.clone() });
         };
         // Templates are for the version that they came with.
-        let from = format!("{from}, version = \"{}\"", env!("CARGO_PKG_VERSION"));
+        let from = format!("path = {}, version = \"{}\"", toml::Value::from(path), env!("CARGO_PKG_VERSION"));
         manifest = manifest.replace(&format!("{{{{{part}}}}}"), &from);
     }
     Ok(manifest)

@@ -1,17 +1,14 @@
 //! Parts and tolerances as text.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use hwasp_training::{Change, Evaluation, MeanInterval};
-use hwasp_workshop::parts::{JointDesign, JointParts, PartsList};
+use hwasp_workshop::parts::{ChosenParts, JointDesign, JointParts, PartsList};
 use hwasp_workshop::tolerances::{Sensitivities, Side};
-
-use super::quantity;
 
 /// Parameters that are printed: the file has all.
 const MOST_SHOWN: usize = 24;
-/// Those that have to be precise.
-const PRECISE: usize = 3;
 
 /// A parts list: what is chosen, and what that is worth.
 pub(crate) fn parts(list: &PartsList) -> String {
@@ -73,8 +70,18 @@ fn changed(change: &Change) -> String {
 }
 
 fn interval(figure: &MeanInterval, scale: f64, decimals: usize) -> String {
-    let [mean, low, high] = [figure.mean, figure.low, figure.high].map(|x| format!("{:.decimals$}", scale * x));
-    format!("{mean} [{low}, {high}]")
+    format!("{:.decimals$}", figure.scaled(scale))
+}
+
+/// Which parts print files are for.
+pub(crate) fn printed_for(chosen: &ChosenParts, run: &Path) -> String {
+    match &chosen.list {
+        Some(list) => format!("what is printed is made for the parts in {}", list.display()),
+        None => format!(
+            "what is printed is made for springs of the catalogue that comes with the program; `hwasp parts {}` chooses others",
+            run.display()
+        ),
+    }
 }
 
 /// What errors of the parameters do, the costliest first.
@@ -84,18 +91,21 @@ pub(crate) fn tolerances(of: &Sensitivities) -> String {
     text.push_str(&evaluated("as designed", nominal));
     let widest = parameters.iter().take(MOST_SHOWN).map(|p| p.name.len()).max().unwrap_or(0).max("parameter".len());
     let success = if nominal.success.is_empty() { "" } else { "of success, points" };
-    let heading =
-        format!("  {:<widest$}  {:>18}{:>10}   {:<30}{success}", "parameter", "designed", "error", "change of return");
+    let heading = format!(
+        "  {:<widest$}  {:>18}{:>16}{:>20}   {:<30}{success}",
+        "parameter", "designed", "error", "simulated", "change of return"
+    );
     let _ = writeln!(text, "\n{}", heading.trim_end());
     for parameter in parameters.iter().take(MOST_SHOWN) {
-        let designed = quantity(parameter.nominal, &parameter.unit);
+        let designed = parameter.designed();
         for (sign, side) in [("−", &parameter.minus), ("+", &parameter.plus)] {
             let (name, designed) = if sign == "−" { (parameter.name.as_str(), designed.as_str()) } else { ("", "") };
-            let error = format!("{sign}{}", parameter.error_text);
+            let error = format!("{sign}{}", parameter.off_by());
+            let simulated = parameter.simulated(side);
             let Side { change, .. } = side;
             let success = change.success.as_ref().map_or(String::new(), |s| interval(s, 100.0, 1));
             let line = format!(
-                "  {name:<widest$}  {designed:>18}{error:>10}   {:<30}{success}",
+                "  {name:<widest$}  {designed:>18}{error:>16}{simulated:>20}   {:<30}{success}",
                 interval(&change.undiscounted_return, 1.0, 1)
             );
             let _ = writeln!(text, "{}", line.trim_end());
@@ -104,11 +114,6 @@ pub(crate) fn tolerances(of: &Sensitivities) -> String {
     if parameters.len() > MOST_SHOWN {
         let _ = writeln!(text, "  … and {} that cost less", parameters.len() - MOST_SHOWN);
     }
-    let precise: Vec<&str> =
-        parameters.iter().filter(|p| p.loss > 0.0).take(PRECISE).map(|p| p.name.as_str()).collect();
-    let _ = match precise[..] {
-        [] => writeln!(text, "\n  No error costs anything."),
-        _ => writeln!(text, "\n  To be made precisely first: {}.", precise.join(", ")),
-    };
+    let _ = writeln!(text, "\n  {}", of.verdict());
     text
 }

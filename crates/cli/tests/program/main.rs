@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
 mod arguments;
+mod comparisons;
 mod designs;
 #[cfg(target_os = "linux")]
 mod errors;
@@ -13,10 +14,13 @@ mod experiments;
 mod exports;
 mod folders;
 mod help;
+mod judged;
 mod parts;
 mod pipes;
 mod play;
+mod printable;
 mod projects;
+mod reference;
 mod report;
 #[cfg(unix)]
 mod resume;

@@ -162,6 +162,7 @@ fn a_comparison() {
 fn names_from_strangers_are_text() {
     let sandbox = Sandbox::with_run("report-hostile");
     let evil = "</title><script>alert(1)</script><b onload='x'>&amp;";
+    sandbox.forget_experiment();
     sandbox.replace("run/experiment.toml", "name = \"reach\"", &format!("name = \"{evil}\""));
     sandbox.replace("run/experiment.toml", "description = \"", "description = \"</p><img alt=x>");
     sandbox.replace("run/summary.json", "\"experiment\": \"reach\"", &format!("\"experiment\": \"{evil}\""));

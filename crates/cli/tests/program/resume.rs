@@ -142,8 +142,10 @@ fn a_comparison_that_was_stopped_goes_on_in_the_middle_of_its_cells() {
     });
     signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
     assert!(stderr(&output).contains("the same command goes on with them"), "{output:?}");
+    let table = fs::read_to_string(sandbox.path("many/table.md")).unwrap();
+    assert!(table.contains(" is not finished: ") && !table.contains(" failed: "), "{table}");
     assert!(sandbox.path("many/cells/hwasp-seed0/checkpoints").is_dir());
     assert!(sandbox.run(&format!("{line} many")).status.success());
     for cell in ["hwasp-seed0", "hwasp-seed1", "cmaes-rl-seed0", "cmaes-rl-seed1"] {

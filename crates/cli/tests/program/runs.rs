@@ -104,7 +104,7 @@ fn a_comparison() {
         &format!("{small} --methods hwasp,fixed:middle --set ppo.clip_ratio=0.1"),
     ]);
     insta::assert_snapshot!(output);
-    assert!(String::from_utf8_lossy(&sandbox.read("both/table.md")).contains("| fixed:middle | 2 |"));
+    assert!(String::from_utf8_lossy(&sandbox.read("both/table.md")).contains("| fixed:middle | 2 of 2 |"));
     let again = sandbox.run(&format!("{small} --methods hwasp,fixed:middle"));
     assert!(String::from_utf8_lossy(&again.stderr).contains("4 cells, 4 of them there already"));
 }

@@ -55,10 +55,12 @@ impl PolicySpec {
             return Err(PlacementError::Count { given: self.placements.len(), needed: space.len() });
         }
         for (i, place) in self.placements.iter().enumerate() {
-            let (lo, hi) = space.bounds(i);
-            if let Placement::Fixed(value) = *place
-                && !(lo..=hi).contains(&value)
-            {
+            let (value, (lo, hi)) = match *place {
+                Placement::Fixed(value) => (value, space.bounds(i)),
+                Placement::Built(value) => (value, (f64::MIN, f64::MAX)),
+                Placement::Graph | Placement::Action => continue,
+            };
+            if !(lo..=hi).contains(&value) {
                 return Err(PlacementError::Outside { name: space.names()[i].clone(), value, lo, hi });
             }
         }
@@ -77,8 +79,7 @@ impl PolicySpec {
             return Err(PlacementError::Noise { given: self.noise.command.len(), needed: env.command.len() });
         }
         let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
-        let free: Vec<usize> =
-            (0..space.len()).filter(|&i| !matches!(self.placements[i], Placement::Fixed(_))).collect();
+        let free: Vec<usize> = (0..space.len()).filter(|&i| self.placements[i].kept().is_none()).collect();
         let mut composition = Composition { program: self.trace(env, &layout, &free), layout, free, noise: Vec::new() };
         composition.noise = self.component_noise(env, &composition.layout);
         Ok(composition)
@@ -108,7 +109,7 @@ impl PolicySpec {
             if layout.efforts > 0 {
                 let mut design = squashed;
                 for (i, place) in self.placements.iter().enumerate() {
-                    if let Placement::Fixed(value) = *place {
+                    if let Some(value) = place.kept() {
                         design[i] = Var::constant(value);
                     }
                 }

@@ -93,8 +93,7 @@ impl HardwarePolicy {
 
     /// The whole design in SI: what the parameters say, and the fixed values.
     pub fn design(&self, params: &[f32]) -> Vec<f64> {
-        let mut design: Vec<f64> =
-            self.spec.placements.iter().map(|p| if let crate::Placement::Fixed(v) = p { *v } else { 0.0 }).collect();
+        let mut design: Vec<f64> = self.spec.placements.iter().map(|place| place.kept().unwrap_or(0.0)).collect();
         for (&i, &u) in self.composition.free.iter().zip(&params[self.range(ParamKind::Design)]) {
             design[i] = self.space().squash(i, f64::from(u));
         }

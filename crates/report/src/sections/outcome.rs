@@ -2,6 +2,7 @@
 
 use hwasp_plot::{IntervalRow, intervals};
 use hwasp_runs::text::grouped;
+use hwasp_training::stats::Interval;
 use hwasp_training::{Evaluation, SuccessRate};
 use maud::{Markup, html};
 
@@ -59,7 +60,7 @@ fn success(rates: &[SuccessRate]) -> Markup {
 /// A share of successes in a picture of shares.
 pub(crate) fn rate_row<'a>(label: &'a str, rate: &SuccessRate) -> IntervalRow<'a> {
     let [value, low, high] = [rate.rate(), rate.low, rate.high].map(|share| 100.0 * share);
-    IntervalRow { label, value, text: percent(rate.rate()), low, high, points: &[] }
+    IntervalRow { label, value, text: percent(rate.rate()), interval: Some(Interval { low, high }), points: &[] }
 }
 
 fn returns(run: &Run, evaluation: &Evaluation) -> Markup {

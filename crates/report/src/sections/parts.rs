@@ -11,7 +11,7 @@ use super::provenance::not_yet;
 use crate::figure::{gallery, picture};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{change, decimal, interval, percent, rate_interval, spaced};
+use crate::words::{change, decimal, mean_interval, percent, rate_interval, spaced};
 
 pub(crate) fn section(run: &Run) -> Section {
     let (line, then) =
@@ -29,7 +29,7 @@ fn springs(list: &PartsList) -> Markup {
     html! {
         p {
             "Springs are from the catalogue " code { (list.catalogue.name) } " of " (grouped(list.catalogue.springs as u64))
-            "; pulleys are turned for a line of " (mm(list.bench.line)) " mm."
+            "; pulleys are turned for a line of " (mm(list.workshop.line)) " mm."
         }
         table.cards {
             caption { "The parts of each kind of joint, and how near they come to what was trained" }
@@ -119,7 +119,7 @@ fn worth(list: &PartsList) -> Markup {
                             td.n data-label="change of return" {
                                 @match step {
                                     Some(Change { undiscounted_return: figure, .. }) => {
-                                        div { (change(figure.mean, 1)) br; small { (interval(figure.low, figure.high, 1)) } }
+                                        div { (change(figure.mean, 1)) br; small { (mean_interval(figure, 1)) } }
                                     }
                                     None => "–",
                                 }

@@ -7,7 +7,7 @@ use super::provenance::not_yet;
 use crate::figure::{picture, wide};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{change, interval, percent, spaced};
+use crate::words::{change, mean_interval, percent, spaced};
 
 pub(crate) fn section(run: &Run) -> Section {
     let (line, then) = (format!("hwasp tolerances {}", run.typed_path()), "what an error of each parameter costs");
@@ -51,7 +51,7 @@ fn side(side: &Side) -> Markup {
     let figure = &side.change.undiscounted_return;
     html! {
         (change(figure.mean, 1))
-        br; small { (interval(figure.low, figure.high, 1)) }
+        br; small { (mean_interval(figure, 1)) }
         @if let Some(rate) = &side.success { br; small { "success " (percent(rate.rate())) } }
     }
 }

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
+use hwasp_settings::text::shorten;
 use hwasp_training::{Assembly, params_at};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::Provenance;
@@ -17,7 +19,7 @@ use crate::layout::{LARGEST_SUMMARY, METRICS, POLICY, PROVENANCE, SUMMARY};
 use crate::metrics::MetricsTable;
 use crate::policy_file::{LARGEST_POLICY, read_policy};
 use crate::store::CheckpointStore;
-use crate::summary::Summary;
+use crate::summary::{Summary, values_hash};
 
 /// A run that was written before.
 pub struct SavedRun {
@@ -32,9 +34,26 @@ impl SavedRun {
     }
 
     /// The same with values of the experiment set anew (`key=value`), to see what a result is worth in another world.
+    ///
+    /// # Errors
+    /// [`RunError::OtherMachine`] where one of them changes design, law, ports or controller: what was trained is nothing there.
     pub fn open_with(path: &Path, assignments: &[String], catalogue: &Catalogue) -> Result<Self, RunError> {
-        let experiment = saved_experiment(path, assignments, catalogue)?;
-        Ok(Self { path: path.to_owned(), assembly: Assembly::new(&experiment)? })
+        let assembly = |set: &[String]| -> Result<Assembly, RunError> {
+            Ok(Assembly::new(&saved_experiment(path, set, catalogue)?)?)
+        };
+        let asked = assembly(assignments)?;
+        if !assignments.is_empty() {
+            let trained = assembly(&[])?;
+            if let Some(what) = trained.other_machine(&asked) {
+                // The first of them after which it is another one; a part of them may be no experiment by itself.
+                let other =
+                    |i: &usize| assembly(&assignments[..=*i]).is_ok_and(|a| trained.other_machine(&a).is_some());
+                let at = (0..assignments.len()).find(other).unwrap_or(assignments.len() - 1);
+                let assignment = shorten(&assignments[at], 120);
+                return Err(RunError::OtherMachine { path: path.to_owned(), assignment, what });
+            }
+        }
+        Ok(Self { path: path.to_owned(), assembly: asked })
     }
 
     /// Its experiment, ready to run.
@@ -86,7 +105,25 @@ pub fn saved_experiment(path: &Path, assignments: &[String], catalogue: &Catalog
     let text = String::from_utf8_lossy(&text);
     let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
     let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
-    Ok(resolve(layers, None, catalogue)?)
+    let experiment = resolve(layers, None, catalogue)?;
+    check_unchanged(path, &text)?;
+    Ok(experiment)
+}
+
+/// Refuses the experiment of a finished run that is not the one it was trained with. A summary that cannot be read is the
+/// business of those who need it.
+fn check_unchanged(run: &Path, experiment: &str) -> Result<(), RunError> {
+    let Ok(Some(Trained { experiment_sha256: Some(trained) })) = saved_json(&run.join(SUMMARY)) else { return Ok(()) };
+    if values_hash(experiment).is_some_and(|found| found == trained) {
+        return Ok(());
+    }
+    Err(RunError::Edited { path: run.join(EXPERIMENT) })
+}
+
+/// What a summary says of the experiment.
+#[derive(Deserialize)]
+struct Trained {
+    experiment_sha256: Option<String>,
 }
 
 /// The figures of a run folder.

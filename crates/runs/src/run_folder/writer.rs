@@ -107,6 +107,10 @@ impl RunFolder {
             Err(source) => return Err(io_error("create", path, source)),
         }
         let folder = Self::new(path, spec, provenance, keeping)?;
+        // Between the look and the lock, another process may have been here.
+        if !is_blank(path) {
+            return Err(RunError::Exists { path: path.to_owned() });
+        }
         folder.write_head()?;
         Ok(folder)
     }
@@ -135,6 +139,10 @@ impl RunFolder {
             None => provenance,
         };
         let mut folder = Self::new(path, spec, &provenance, keeping)?;
+        // Between the look and the lock, another process may have finished it.
+        if path.join(SUMMARY).is_file() {
+            return Err(RunError::Finished { path: path.to_owned() });
+        }
         let found = folder.store.newest()?;
         folder.store.set_aside(&found)?;
         folder.resumed = found.checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.iteration);

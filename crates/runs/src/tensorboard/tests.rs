@@ -51,3 +51,25 @@ fn varints() {
         assert_eq!(out, expected, "{value}");
     }
 }
+
+/// After a resume with the clock set back an hour, TensorBoard showed 1077 points of 1000 rows: readers take files in the order of
+/// their names, and the newer file came first.
+#[test]
+fn a_clock_that_steps_back_leaves_files_and_times_in_order() {
+    let folder = std::env::temp_dir().join(format!("hwasp-tensorboard-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    // Written by a clock that was a day ahead; and files of somebody else's, which say nothing.
+    let ahead = now() + 86_400.0;
+    let first = format!("{PREFIX}{ahead:.6}.hwasp");
+    for name in [&first, "events.out.tfevents.9999999999.other", "events.out.tfevents.inf.hwasp", "notes"] {
+        fs::write(folder.join(name), "").unwrap();
+    }
+    let mut board = TensorBoard::create(&folder).unwrap();
+    let name = board.path().file_name().unwrap().to_str().unwrap().to_owned();
+    assert!(name > first, "{name} after {first}");
+    assert!(board.tick() > ahead);
+    let third = TensorBoard::create(&folder).unwrap();
+    assert!(third.path() > board.path());
+    fs::remove_dir_all(&folder).unwrap();
+}

@@ -1,7 +1,7 @@
 //! What experiments may set of a grasping problem.
 
 use hwasp_core::Dimension;
-use hwasp_settings::{Fields, Item, Settings, choice};
+use hwasp_settings::{Fields, Item, Kind, Settings, choice};
 
 use crate::hand::{HandDescription, HandRange, PalmMotion};
 
@@ -216,7 +216,10 @@ impl GraspTaskSettings {
         };
         let default = if let Inertia::Independent(range) = self.inertia { range } else { [1e-4, 5e-3] };
         let about = "each principal moment, kg·m²; or \"physical\", from mass, shape and size";
+        let number = Kind::Number([*LIMITS.start(), *LIMITS.end()]);
+        let span = Kind::List { of: Box::new(number), length: [1, 2], single: true };
         fields.default("1e-4 to 5e-3").limits("1e-7 to 1");
+        fields.kind(Kind::AnyOf(vec![Kind::Choice(vec!["physical"]), span]));
         fields.open("inertia", about, Some(item), |section, node| {
             self.inertia = match node.text() {
                 Some("physical") => Inertia::Physical,

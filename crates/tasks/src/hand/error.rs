@@ -30,6 +30,18 @@ pub enum HandError {
         /// In this unit.
         unit: &'static str,
     },
+    /// A part that this hand has no room for.
+    #[error("{what} takes {:.2} mm, and this hand has {:.2} mm for it\n  = hint: {hint}", 1e3 * needed, 1e3 * room)]
+    Room {
+        /// What needs room.
+        what: String,
+        /// How much it needs, m.
+        needed: f64,
+        /// How much there is, m.
+        room: f64,
+        /// The way out.
+        hint: &'static str,
+    },
     /// Principal moments of inertia that no rigid body has.
     #[error("{name} = {inertia:?} kg·m²: the largest is above the sum of the others, which no rigid body has")]
     Inertia {

@@ -124,8 +124,9 @@ fn child(link: &str) -> Element {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parts::{Stock, parts};
+    use super::super::parts::parts;
     use super::super::space::SEARCHED;
+    use super::super::workshop::{SeatedSpring, Workshop};
     use super::*;
 
     fn text() -> String {
@@ -143,7 +144,8 @@ mod tests {
         for name in JOINTS {
             assert_eq!(named("joint", name), 1, "{name}");
         }
-        let parts = parts(&HandDescription::default(), &SEARCHED, &Stock::default()).unwrap();
+        let springs = [SeatedSpring { wire: 0.38e-3, outer: 5.26e-3, length: 2.6e-3 }; 4];
+        let parts = parts(&HandDescription::default(), &SEARCHED, &springs, &Workshop::default()).unwrap();
         for part in &parts {
             assert_eq!(text.matches(&format!("filename=\"{}.stl\"", part.name)).count(), part.count, "{}", part.name);
         }

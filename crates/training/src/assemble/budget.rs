@@ -1,4 +1,5 @@
-//! What a search costs, in real simulator steps, and whether an experiment's budget holds it.
+//! What trainings and searches cost, in real simulator steps, and how an experiment's budget is spent: never more than it
+//! holds, and less by no more than the smallest [`Piece`] of the method.
 
 use hwasp_algos::CmaesConfig;
 use hwasp_core::Policy;
@@ -10,13 +11,55 @@ use super::{AssembleError, Assembly};
 /// episodes was lucky, too.
 pub(crate) const FINAL_EPISODES: usize = 16;
 
+/// The smallest part of a training that a method does whole or not at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// What it is, in a word.
+    pub what: &'static str,
+    /// Real simulator steps that it takes, at most.
+    pub env_steps: u64,
+}
+
 impl Assembly {
+    /// The episodes of the iteration that follows so many steps, 0 where the budget is spent.
+    ///
+    /// Iterations are as the experiment has them, but for the last: it takes what is left, from half to one and a half times
+    /// the usual number of episodes. The gradient is then a mean over a sensible number of episodes, and the budget is spent to
+    /// within an episode. Where episodes end early, less than half an iteration may be left, which is not used.
+    pub(crate) fn iteration_episodes(&self, env_steps: u64) -> u64 {
+        let train = &self.experiment().train;
+        let usual = train.episodes_per_iteration as u64;
+        match train.env_steps.saturating_sub(env_steps) / train.episode_steps as u64 {
+            left if 2 * left >= 3 * usual => usual,
+            left if 2 * left >= usual => left,
+            _ => 0,
+        }
+    }
+
+    /// Iterations of a training whose episodes all have their full length, and the episodes of the last one.
+    pub fn iterations(&self) -> (u64, u64) {
+        let train = &self.experiment().train;
+        let (whole, usual) = (train.env_steps / train.episode_steps as u64, train.episodes_per_iteration as u64);
+        match (whole / usual, whole % usual) {
+            // Less than half an iteration goes into the one before.
+            (iterations, rest) if iterations > 0 && 2 * rest < usual => (iterations, usual + rest),
+            (iterations, rest) => (iterations + 1, rest),
+        }
+    }
+
+    /// What the method cannot divide.
+    pub fn piece(&self) -> Piece {
+        match self.generation() {
+            Some((popsize, each)) => Piece { what: "generation", env_steps: popsize as u64 * each },
+            None => Piece { what: "episode", env_steps: self.experiment().train.episode_steps as u64 },
+        }
+    }
+
     /// Real simulator steps that one candidate of a search costs, at most.
     pub(crate) fn candidate_steps(&self) -> u64 {
         let spec = self.experiment();
         if spec.method.trains_inside() {
-            // A training ends with a whole iteration.
-            return spec.search.inner_env_steps.next_multiple_of(spec.train.rows() as u64);
+            return spec.search.inner_env_steps;
         }
         spec.search.episodes as u64 * spec.train.episode_steps as u64
     }

@@ -8,8 +8,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use hwasp_settings::nearest;
 use hwasp_settings::text::shorten;
+use hwasp_settings::{listed, nearest};
 use thiserror::Error;
 
 use super::spring::{MUSIC_WIRE_MODULUS, TorsionSpring, music_wire_strength};
@@ -68,6 +68,8 @@ pub struct SpringCatalogue {
     pub name: String,
     /// The springs, in the order of the rows, at least one.
     pub springs: Vec<CatalogueSpring>,
+    /// Columns that say nothing here: a supplier's prices and stocks.
+    pub ignored: Vec<String>,
 }
 
 /// Why a catalogue is of no use.
@@ -136,23 +138,30 @@ impl SpringCatalogue {
         Self::parse(&name, &bytes)
     }
 
+    /// What to tell of columns that are ignored, if there are any.
+    pub fn remark(&self) -> Option<String> {
+        let names = listed(self.ignored.iter().take(MOST_SHOWN).map(String::as_str));
+        let more = self.ignored.len().saturating_sub(MOST_SHOWN);
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        (!self.ignored.is_empty()).then(|| format!("columns of {} that are not needed: {names}{rest}", self.name))
+    }
+
     /// Reads the text of a catalogue, a header with the columns' names first; `name`: what errors call it. All wrong rows are
     /// told at once.
     pub fn parse(name: &str, text: &[u8]) -> Result<Self, SpringCatalogueError> {
-        let mut springs = Vec::new();
-        let mut faults = Vec::new();
-        read(text, &mut springs, &mut faults);
+        let (mut springs, mut ignored, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+        read(text, &mut springs, &mut ignored, &mut faults);
         if springs.is_empty() && faults.is_empty() {
             faults.push(CatalogueFault { line: 1, message: "there are no springs below the header".into() });
         }
         if faults.is_empty() {
-            return Ok(Self { name: name.to_owned(), springs });
+            return Ok(Self { name: name.to_owned(), springs, ignored });
         }
         Err(SpringCatalogueError::Faults { name: name.to_owned(), faults })
     }
 }
 
-fn read(text: &[u8], springs: &mut Vec<CatalogueSpring>, faults: &mut Vec<CatalogueFault>) {
+fn read(text: &[u8], springs: &mut Vec<CatalogueSpring>, ignored: &mut Vec<String>, faults: &mut Vec<CatalogueFault>) {
     // Spreadsheets begin a file with a mark of its encoding.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut reader = ReaderBuilder::new().comment(Some(b'#')).trim(Trim::All).flexible(true).from_reader(text);
@@ -163,7 +172,10 @@ fn read(text: &[u8], springs: &mut Vec<CatalogueSpring>, faults: &mut Vec<Catalo
     };
     let first = header.position().map_or(1, csv::Position::line);
     let places = match places(&header) {
-        Ok(places) => places,
+        Ok((places, others)) => {
+            *ignored = others;
+            places
+        }
         Err(message) => return fault(first, message),
     };
     let mut known = BTreeSet::new();
@@ -187,17 +199,26 @@ fn read(text: &[u8], springs: &mut Vec<CatalogueSpring>, faults: &mut Vec<Catalo
 }
 
 /// Where the part and each of [`COLUMNS`] are.
-fn places(header: &StringRecord) -> Result<(usize, [Option<usize>; 7]), String> {
+type Places = (usize, [Option<usize>; 7]);
+
+/// Where they are in a header, and the columns that are none of them. A slip in a name is told: a column that is not there and is
+/// nearly called so.
+fn places(header: &StringRecord) -> Result<(Places, Vec<String>), String> {
     let names = || std::iter::once("part").chain(COLUMNS.iter().map(|column| column.name));
+    let absent = || names().filter(|name| header.iter().all(|found| found != *name));
+    let mut ignored = Vec::new();
     for (i, found) in header.iter().enumerate() {
         let shown = shown(found);
         if !names().any(|name| name == found) {
-            if found.contains(';') || found.contains('\t') {
+            if absent().count() > COLUMNS.len() && found.contains([';', '\t']) {
                 return Err("columns are parted by commas".into());
             }
-            let near = nearest(found, names()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            let known = names().collect::<Vec<_>>().join(", ");
-            return Err(format!("column `{shown}` is none of {known}{near}"));
+            if let Some(near) = nearest(found, absent()) {
+                let known = names().collect::<Vec<_>>().join(", ");
+                return Err(format!("column `{shown}` is none of {known}; did you mean `{near}`?"));
+            }
+            ignored.push(shown);
+            continue;
         }
         if header.iter().take(i).any(|before| before == found) {
             return Err(format!("column `{shown}` stands there twice"));
@@ -207,16 +228,12 @@ fn places(header: &StringRecord) -> Result<(usize, [Option<usize>; 7]), String> 
     let missing = names()
         .find(|&name| place(name).is_none() && !COLUMNS.iter().any(|column| column.name == name && column.optional));
     match (missing, place("part")) {
-        (None, Some(part)) => Ok((part, COLUMNS.each_ref().map(|column| place(column.name)))),
+        (None, Some(part)) => Ok(((part, COLUMNS.each_ref().map(|column| place(column.name))), ignored)),
         (missing, _) => Err(format!("column `{}` is missing", missing.unwrap_or("part"))),
     }
 }
 
-fn spring(
-    row: &StringRecord,
-    header: &StringRecord,
-    (part, places): &(usize, [Option<usize>; 7]),
-) -> Result<CatalogueSpring, String> {
+fn spring(row: &StringRecord, header: &StringRecord, (part, places): &Places) -> Result<CatalogueSpring, String> {
     if row.len() != header.len() {
         return Err(format!("{} fields, and the header has {}", row.len(), header.len()));
     }

@@ -1,9 +1,8 @@
 //! The parts list as files and programs have it. Everything is in SI units.
 
+use hwasp_tasks::hand::{DESIGN_LEN, SeatedSpring, Workshop};
 use hwasp_training::{Change, Evaluation};
 use serde::{Deserialize, Serialize};
-
-use super::Bench;
 
 /// The parts of a hand and what they are worth: `parts.json`. SI units: m, N·m/rad, N·m, rad, Pa.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,8 +17,9 @@ pub struct PartsList {
     pub seed: u64,
     /// Where the springs come from.
     pub catalogue: CatalogueNote,
-    /// What the workshop has.
-    pub bench: Bench,
+    /// The workshop; what an older list does not say of it is as by default.
+    #[serde(rename = "bench")]
+    pub workshop: Workshop,
     /// The four kinds of joints: thumb proximal, thumb distal, finger proximal, finger distal.
     pub joints: Vec<JointParts>,
     /// Every design parameter as trained and as these parts make it, in the order of the design.
@@ -72,6 +72,21 @@ pub struct JointParts {
     pub spring: SpringPart,
     /// How far the springs' torque is off at worst, over the joint's whole range, N·m.
     pub torque_error: f64,
+}
+
+impl SpringPart {
+    /// As its joint has to make room for it: wide as it is free, long with the joint closed.
+    pub fn seated(&self) -> SeatedSpring {
+        SeatedSpring { wire: self.wire, outer: self.outer, length: self.length_wound }
+    }
+}
+
+/// The design that parts of four kinds of joints make, in its order.
+pub(super) fn design_of(joints: &[JointParts; 4], of: fn(&JointParts) -> JointDesign) -> [f64; DESIGN_LEN] {
+    std::array::from_fn(|i| {
+        let JointDesign { radius, stiffness, preload } = of(&joints[i % 4]);
+        [radius, stiffness, preload][i / 4]
+    })
 }
 
 /// A pulley.

@@ -4,8 +4,8 @@
 //! [`snap`] takes the nearest parts for a design. [`Snapped::judge`] simulates the design before and after, on the same held-out
 //! episodes. A [`Tuning`] trains the controller further. A [`PartsList`] is what is written.
 
-mod bench;
 mod catalogue;
+mod chosen;
 mod list;
 mod select;
 mod sheet;
@@ -15,15 +15,17 @@ mod tune;
 use std::path::Path;
 
 use crate::design::hand_of;
+use crate::folder::writable;
 use hwasp_core::Executor;
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{RunError, encode, io_error};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
+pub use hwasp_tasks::hand::{SeatedSpring, Workshop};
 use hwasp_training::{AssembleError, Assembly, EvaluateError, Reference, TrainError};
 use thiserror::Error;
 
-pub use bench::{Bench, BenchError};
 pub use catalogue::{BUILT_IN, CatalogueFault, CatalogueSpring, SpringCatalogue, SpringCatalogueError};
+pub use chosen::{ChosenParts, ChosenPartsError};
 pub use list::{
     CatalogueNote, JointDesign, JointParts, PartsList, PartsWorth, PulleyPart, SnappedParameter, SpringPart, TunedWorth,
 };
@@ -32,6 +34,8 @@ pub use sheet::build_sheet;
 pub use spring::{MUSIC_WIRE_MODULUS, TorsionSpring, music_wire_strength};
 pub use tune::{Tuning, TuningFolder};
 
+/// Where a run folder has its list, unless it was put elsewhere.
+pub const BUILD: &str = "build";
 /// The list as files and programs have it.
 pub const PARTS: &str = "parts.json";
 /// The list as a technician has it.
@@ -44,7 +48,7 @@ pub const TUNED: &str = "tuned";
 pub enum PartsError {
     /// A problem without a hand.
     #[error(
-        "{problem} has no transmission of pulleys and springs whose parts could be chosen; z-grasp and 3d-grasp have"
+        "{problem} has no pulleys and springs to be chosen\n  = hint: name a run of a hand: of z-grasp, or of 3d-grasp"
     )]
     NoHand {
         /// The problem.
@@ -78,13 +82,13 @@ pub enum PartsError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapped {
     /// The parts of each kind of joint.
-    pub joints: Vec<JointParts>,
+    pub joints: [JointParts; 4],
     /// As trained, SI.
     pub trained: [f64; DESIGN_LEN],
     /// As these parts make it, SI.
     pub built: [f64; DESIGN_LEN],
     catalogue: CatalogueNote,
-    bench: Bench,
+    workshop: Workshop,
 }
 
 /// Chooses the parts that come nearest to the design in `params`.
@@ -92,20 +96,17 @@ pub fn snap(
     assembly: &Assembly,
     params: &[f32],
     catalogue: &SpringCatalogue,
-    bench: &Bench,
+    workshop: &Workshop,
 ) -> Result<Snapped, PartsError> {
     let hand = hand(assembly)?;
     let space = assembly.policy.space();
     let design = assembly.built(params);
     let trained = std::array::from_fn(|i| design[i]);
     let limits = std::array::from_fn(|i| space.bounds(i));
-    let joints = select(&hand, &trained, &limits, catalogue, bench)?;
-    let built = std::array::from_fn(|i| {
-        let JointDesign { radius, stiffness, preload } = joints[i % 4].built;
-        [radius, stiffness, preload][i / 4]
-    });
+    let joints = select(&hand, &trained, &limits, catalogue, workshop)?;
+    let built = list::design_of(&joints, |joint| joint.built);
     let catalogue = CatalogueNote { name: catalogue.name.clone(), springs: catalogue.springs.len() };
-    Ok(Snapped { joints, trained, built, catalogue, bench: bench.clone() })
+    Ok(Snapped { joints, trained, built, catalogue, workshop: workshop.clone() })
 }
 
 fn hand(assembly: &Assembly) -> Result<HandDescription, PartsError> {
@@ -151,9 +152,9 @@ impl Snapped {
             task: spec.task.name().to_owned(),
             seed: spec.seed,
             catalogue: self.catalogue,
-            bench: self.bench,
+            workshop: self.workshop,
             design: space.names().into_iter().enumerate().map(parameter).collect(),
-            joints: self.joints,
+            joints: self.joints.to_vec(),
             worth,
         }
     }
@@ -179,7 +180,7 @@ impl PartsList {
     pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let mut json = serde_json::to_vec_pretty(self).map_err(|e| encode(PARTS, &e))?;
         json.push(b'\n');
-        std::fs::create_dir_all(folder).map_err(|source| io_error("create", folder, source))?;
+        writable(folder)?;
         for (name, contents) in [(PARTS, &json[..]), (SHEET, build_sheet(self).as_bytes())] {
             let path = folder.join(name);
             files::replace(&Disk, &path, contents).map_err(|source| io_error("write", &path, source))?;

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use hwasp_tasks::hand::names::{KIND_OF_JOINT, KINDS};
-use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, Workshop};
 use thiserror::Error;
 
-use super::{Bench, CatalogueSpring, JointDesign, JointParts, PulleyPart, SpringCatalogue, SpringPart, TorsionSpring};
+use super::{CatalogueSpring, JointDesign, JointParts, PulleyPart, SpringCatalogue, SpringPart, TorsionSpring};
 
 /// Limits of every design parameter, SI.
 pub(super) type Limits = [(f64, f64); DESIGN_LEN];
@@ -18,7 +18,7 @@ pub enum SelectError {
     /// No spring will do.
     #[error(
         "no spring of {springs} in the catalogue {catalogue} suits {joint}, which needs {} in {count} of them, wound up by up \
-         to {:.0}°: {rejected}\n  = hint: give a catalogue with others, --catalogue FILE, or change what the workshop has, --bench \
+         to {:.0}°: {rejected}\n  = hint: give `hwasp parts` a catalogue with others, --catalogue FILE, or another workshop, --bench \
          KEY=VALUE",
         per_radian(*stiffness), deflection.to_degrees()
     )]
@@ -40,14 +40,17 @@ pub enum SelectError {
     },
     /// No groove will do.
     #[error(
-        "no groove radius in steps of {} mm puts the pulley of {joint} between {} and {} mm\n  = hint: choose a finer \
-         --bench radius_step=…", 1e3 * step, 1e3 * limits.0, 1e3 * limits.1
+        "no groove radius in steps of {} mm, and none from {:.3} mm on, puts the pulley of {joint} between {} and {} mm\n  = hint: \
+         choose a finer step, --bench radius_step=…, or a thinner axle, --bench axle=…",
+        1e3 * step, 1e3 * least, 1e3 * limits.0, 1e3 * limits.1
     )]
     Pulley {
         /// The joint.
         joint: &'static str,
         /// The step, m.
         step: f64,
+        /// The least groove that has a wall around the axle, m.
+        least: f64,
         /// Limits of the pulley's radius, m.
         limits: (f64, f64),
     },
@@ -93,18 +96,18 @@ impl fmt::Display for Rejected {
 }
 
 /// What keeps a spring from being wound up by an angle, rad, in the room of a workshop; nothing if it will do.
-pub fn unfit(spring: &TorsionSpring, deflection: f64, bench: &Bench) -> Option<Reason> {
-    if spring.outer > bench.coil_room {
+pub fn unfit(spring: &TorsionSpring, deflection: f64, workshop: &Workshop) -> Option<Reason> {
+    if spring.outer > workshop.coil_room {
         return Some(Reason::Wide);
     }
-    if spring.inner_wound(deflection) < bench.axle * (1.0 + bench.clearance) {
+    if spring.inner_wound(deflection) < workshop.axle * (1.0 + workshop.clearance) {
         return Some(Reason::Tight);
     }
-    if spring.length_wound(deflection) > bench.spring_room {
+    if spring.length_wound(deflection) > workshop.spring_room {
         return Some(Reason::Long);
     }
     let stress = spring.stress(spring.rate() * deflection);
-    (stress > bench.stress_share * spring.strength).then_some(Reason::Stressed)
+    (stress > workshop.stress_share * spring.strength).then_some(Reason::Stressed)
 }
 
 /// Parts for the four kinds of joints of a `design` (SI) whose parameters have `limits`.
@@ -113,20 +116,15 @@ pub fn select(
     design: &[f64; DESIGN_LEN],
     limits: &Limits,
     catalogue: &SpringCatalogue,
-    bench: &Bench,
-) -> Result<Vec<JointParts>, SelectError> {
-    (0..KINDS.len())
-        .map(|kind| {
-            let trained = JointDesign { radius: design[kind], stiffness: design[4 + kind], preload: design[8 + kind] };
-            let joint = Joint {
-                kind,
-                trained,
-                limits: [0, 4, 8].map(|group| limits[group + kind]),
-                closed: hand.joint.range[1],
-            };
-            joint.parts(catalogue, bench)
-        })
-        .collect()
+    workshop: &Workshop,
+) -> Result<[JointParts; 4], SelectError> {
+    let parts = |kind: usize| {
+        let trained = JointDesign { radius: design[kind], stiffness: design[4 + kind], preload: design[8 + kind] };
+        let limits = [0, 4, 8].map(|group| limits[group + kind]);
+        let joint = Joint { kind, trained, limits, closed: hand.joint.range[1] };
+        joint.parts(catalogue, workshop)
+    };
+    Ok([parts(0)?, parts(1)?, parts(2)?, parts(3)?])
 }
 
 /// A kind of joint that parts are wanted for.
@@ -146,9 +144,9 @@ fn inside(value: f64, (lo, hi): (f64, f64)) -> bool {
 }
 
 impl Joint {
-    fn parts(&self, catalogue: &SpringCatalogue, bench: &Bench) -> Result<JointParts, SelectError> {
-        let pulley = self.pulley(bench)?;
-        let (entry, hole, springs) = self.springs(catalogue, bench)?;
+    fn parts(&self, catalogue: &SpringCatalogue, workshop: &Workshop) -> Result<JointParts, SelectError> {
+        let pulley = self.pulley(workshop)?;
+        let (entry, hole, springs) = self.springs(catalogue, workshop)?;
         let built = JointDesign { radius: pulley.groove_radius + 0.5 * pulley.line, ..springs };
         Ok(JointParts {
             joint: KINDS[self.kind].to_owned(),
@@ -156,21 +154,23 @@ impl Joint {
             trained: self.trained,
             built,
             pulley,
-            spring: spring_part(entry, hole, built.preload + self.closed, bench),
+            spring: spring_part(entry, hole, built.preload + self.closed, workshop),
             torque_error: self.torque_error(&built),
         })
     }
 
     /// The groove whose pulley is nearest.
-    fn pulley(&self, bench: &Bench) -> Result<PulleyPart, SelectError> {
-        let (step, line, limits) = (bench.radius_step, bench.line, self.limits[0]);
+    fn pulley(&self, workshop: &Workshop) -> Result<PulleyPart, SelectError> {
+        let (step, line, limits) = (workshop.radius_step, workshop.line, self.limits[0]);
+        let least = workshop.least_groove();
         let nearest = ((self.trained.radius - 0.5 * line) / step).round();
-        // At a limit the nearest step may lie beyond it.
-        let grooves = [nearest, nearest - 1.0, nearest + 1.0].map(|steps| steps * step);
-        let fits = |groove: &f64| *groove > 0.0 && inside(groove + 0.5 * line, limits);
+        // At a limit the nearest step may lie beyond it; the last bit of a sum is nothing.
+        let thinnest = (least / step - 1e-6).ceil();
+        let grooves = [nearest, nearest - 1.0, nearest + 1.0, thinnest].map(|steps| steps * step);
+        let fits = |groove: &f64| *groove > least - 1e-6 * step && inside(groove + 0.5 * line, limits);
         match grooves.into_iter().find(fits) {
             Some(groove_radius) => Ok(PulleyPart { groove_radius, line }),
-            None => Err(SelectError::Pulley { joint: KINDS[self.kind], step, limits }),
+            None => Err(SelectError::Pulley { joint: KINDS[self.kind], step, least, limits }),
         }
     }
 
@@ -186,19 +186,19 @@ impl Joint {
     fn springs<'c>(
         &self,
         catalogue: &'c SpringCatalogue,
-        bench: &Bench,
+        workshop: &Workshop,
     ) -> Result<(&'c CatalogueSpring, u32, JointDesign), SelectError> {
         let mut best: Option<(f64, (&CatalogueSpring, u32, JointDesign))> = None;
         let mut rejected = Rejected::default();
         for entry in &catalogue.springs {
             let mut why = Some(Reason::Outside);
-            for hole in 0..bench.holes() {
-                let preload = (f64::from(hole) * bench.hole_pitch - entry.leg_angle).rem_euclid(TAU);
-                let stiffness = f64::from(bench.springs) * entry.spring.rate();
+            for hole in 0..workshop.holes() {
+                let preload = (f64::from(hole) * workshop.hole_pitch - entry.leg_angle).rem_euclid(TAU);
+                let stiffness = f64::from(workshop.springs) * entry.spring.rate();
                 if !inside(stiffness, self.limits[1]) || !inside(preload, self.limits[2]) {
                     continue;
                 }
-                let reason = unfit(&entry.spring, preload + self.closed, bench);
+                let reason = unfit(&entry.spring, preload + self.closed, workshop);
                 // With another hole it is wound up less.
                 if why.is_some() {
                     why = reason;
@@ -217,7 +217,7 @@ impl Joint {
             joint: KINDS[self.kind],
             catalogue: catalogue.name.clone(),
             springs: catalogue.springs.len(),
-            count: bench.springs,
+            count: workshop.springs,
             stiffness: self.trained.stiffness,
             deflection: self.trained.preload + self.closed,
             rejected,
@@ -226,13 +226,13 @@ impl Joint {
 }
 
 /// A spring of the catalogue in its place, wound up by `deflection`, rad, when the joint is closed.
-fn spring_part(entry: &CatalogueSpring, hole: u32, deflection: f64, bench: &Bench) -> SpringPart {
+fn spring_part(entry: &CatalogueSpring, hole: u32, deflection: f64, workshop: &Workshop) -> SpringPart {
     let spring = &entry.spring;
     let largest_torque = spring.rate() * deflection;
     let stress = spring.stress(largest_torque);
     SpringPart {
         part: entry.part.clone(),
-        count: bench.springs,
+        count: workshop.springs,
         wire: spring.wire,
         outer: spring.outer,
         inner: spring.inner(),

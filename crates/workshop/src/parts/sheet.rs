@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use hwasp_runs::text::markdown;
 use hwasp_training::{Change, Evaluation, MeanInterval};
 
 use super::{JointDesign, JointParts, PartsList};
@@ -11,9 +12,11 @@ use super::{JointDesign, JointParts, PartsList};
 pub fn build_sheet(list: &PartsList) -> String {
     let PartsList { experiment, method, seed, catalogue, .. } = list;
     let mut text = format!(
-        "# Parts for {experiment} ({method}, seed {seed})\n\nLengths are in mm, torques in N·mm, angles in degrees. Springs are \
-         of the catalogue `{}` ({} springs).\n\n",
-        catalogue.name, catalogue.springs
+        "# Parts for {} ({method}, seed {seed})\n\nLengths are in mm, torques in N·mm, angles in degrees. Springs are \
+         of the catalogue {} ({} springs).\n\n",
+        markdown(experiment),
+        markdown(&catalogue.name),
+        catalogue.springs
     );
     text.push_str(&shopping(list));
     for joint in &list.joints {
@@ -43,16 +46,18 @@ fn shopping(list: &PartsList) -> String {
         of.push(name);
     }
     for (part, (count, of)) in springs {
-        let _ = writeln!(text, "| spring {part} | {count} | {} |", of.join(", "));
+        let _ = writeln!(text, "| spring {} | {count} | {} |", markdown(part), of.join(", "));
     }
-    let _ = writeln!(text, "| axle of {:.2} | {joints} | every joint |", 1e3 * list.bench.axle);
-    let _ = writeln!(text, "| line of {:.2} | 3 | thumb and both fingers |", 1e3 * list.bench.line);
+    let _ = writeln!(text, "| axle of {:.2} | {joints} | every joint |", 1e3 * list.workshop.axle);
+    let pins = 2 * list.joints.iter().filter(|j| j.joint.ends_with("distal")).map(|j| j.joints).sum::<u32>();
+    let _ = writeln!(text, "| pin of {:.2} | {pins} | two in every distal pulley |", 1e3 * list.workshop.pin);
+    let _ = writeln!(text, "| line of {:.2} | 3 | thumb and both fingers |", 1e3 * list.workshop.line);
     text
 }
 
 fn joint_table(joint: &JointParts, list: &PartsList) -> String {
     let JointParts { trained, built, pulley, spring, .. } = joint;
-    let bench = &list.bench;
+    let workshop = &list.workshop;
     let many = if joint.joints == 1 { String::new() } else { format!(", {} times", joint.joints) };
     let mut text = format!("\n## {}{many}\n\n| | trained | built |\n|---|---|---|\n", title(&joint.joint));
     let mut both = |what: &str, of: &dyn Fn(&JointDesign) -> f64, decimals: usize| {
@@ -75,11 +80,13 @@ fn joint_table(joint: &JointParts, list: &PartsList) -> String {
             1e3 * pulley.line
         ),
     );
-    row("springs", format!("{} × {}", spring.count, spring.part));
+    row("springs", format!("{} × {}", spring.count, markdown(&spring.part)));
     row("wire", format!("{:.2}", 1e3 * spring.wire));
     row("coil, free", format!("{:.2} outside, {:.2} inside", 1e3 * spring.outer, 1e3 * spring.inner));
     row("turns", format!("{:.2}", spring.turns));
     row("legs", format!("{:.0} long, {:.0}° apart when free", 1e3 * spring.leg, spring.leg_angle.to_degrees()));
+    let circle = list.workshop.leg_circle(&spring.seated());
+    row("legs, bent", format!("outwards to {:.2} from the middle of the axle, there along it", 1e3 * circle));
     row("rate of one", format!("{:.3} N·mm/rad", 1e3 * spring.rate));
     row("torque of one, joint closed", format!("{:.2} N·mm", 1e3 * spring.largest_torque));
     row(
@@ -88,19 +95,19 @@ fn joint_table(joint: &JointParts, list: &PartsList) -> String {
     );
     row(
         "mandrel",
-        format!("axle of {:.2}; the coil closes to {:.2} inside", 1e3 * bench.axle, 1e3 * spring.inner_wound),
+        format!("axle of {:.2}; the coil closes to {:.2} inside", 1e3 * workshop.axle, 1e3 * spring.inner_wound),
     );
     row(
         "body, joint closed",
-        format!("{:.2} long, room for {:.2}", 1e3 * spring.length_wound, 1e3 * bench.spring_room),
+        format!("{:.2} long, room for {:.2}", 1e3 * spring.length_wound, 1e3 * workshop.spring_room),
     );
     row(
         "hole of the fixed leg",
         format!(
             "no. {} of {} ({:.1}°)",
             spring.hole,
-            bench.holes(),
-            (f64::from(spring.hole) * bench.hole_pitch).to_degrees()
+            workshop.holes(),
+            (f64::from(spring.hole) * workshop.hole_pitch).to_degrees()
         ),
     );
     row("torque at the joint off by at most", format!("{:.2} N·mm", 1e3 * joint.torque_error));
@@ -108,8 +115,8 @@ fn joint_table(joint: &JointParts, list: &PartsList) -> String {
 }
 
 fn mounting(list: &PartsList) -> String {
-    let bench = &list.bench;
-    let turns = if bench.springs > 1 {
+    let workshop = &list.workshop;
+    let turns = if workshop.springs > 1 {
         "The springs of a joint sit on both sides of its pulley, wound left and right in turn. "
     } else {
         ""
@@ -118,8 +125,8 @@ fn mounting(list: &PartsList) -> String {
         "\n## Mounting\n\n{turns}Closing the joint winds a spring up. Its moving leg lies on the moving link, its fixed leg in a hole \
          of the other one. There are {} holes, {:.1}° apart, on a circle about the axle. Hole 0 lies where the moving leg lies with \
          the joint open; count from there against the direction in which the joint closes.\n",
-        bench.holes(),
-        bench.hole_pitch.to_degrees()
+        workshop.holes(),
+        workshop.hole_pitch.to_degrees()
     )
 }
 
@@ -152,6 +159,5 @@ fn worth(list: &PartsList) -> String {
 }
 
 fn interval(figure: &MeanInterval, scale: f64, decimals: usize) -> String {
-    let [mean, low, high] = [figure.mean, figure.low, figure.high].map(|x| format!("{:.decimals$}", scale * x));
-    format!("{mean} [{low}, {high}]")
+    format!("{:.decimals$}", figure.scaled(scale))
 }

@@ -4,10 +4,10 @@ use hwasp_core::{DesignSpace, Dimension, parse_quantity};
 use hwasp_settings::nearest;
 use thiserror::Error;
 
+use super::list::readable;
+
 /// The error of a parameter that nothing is said of.
 const ANY: &str = "5 %";
-/// Those of a hand: springs as they are sold, pulleys as they are printed, and half the way between two holes 15° apart.
-const HAND: [(&str, &str); 3] = [("radius", "0.1 mm"), ("stiffness", "5 %"), ("preload", "0.13 rad")];
 
 /// The manufacturing error of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,16 +29,16 @@ pub struct ManufacturingErrorFault {
 
 /// An error for each parameter of a `design` (SI), in its order. Of the `given` ones, `radius=0.1 mm`, one that names a
 /// parameter goes before one that names its group, that before one for all of a quantity, and a later one before an earlier.
+/// Where none of them names a parameter, those that are `common` for the mechanism count, by the same names.
 pub fn manufacturing_errors(
     space: &DesignSpace,
     design: &[f64],
-    is_hand: bool,
+    common: &[(String, String)],
     given: &[String],
 ) -> Result<Vec<ManufacturingError>, ManufacturingErrorFault> {
     let parameters = parameters(space);
     let given = given.iter().map(|given| assignment(given, &parameters)).collect::<Result<Vec<_>, _>>()?;
-    let common = HAND.iter().filter(|_| is_hand);
-    let common = common.map(|&(key, value)| Assignment { given: format!("{key}={value}"), key, value });
+    let common = common.iter().map(|(key, value)| Assignment { given: format!("{key}={value}"), key, value });
     let any = |parameter: &Parameter| Assignment { given: format!("{}={ANY}", parameter.name), key: "", value: ANY };
     parameters
         .iter()
@@ -91,8 +91,6 @@ struct Parameter {
     /// The last word of the group: `stiffness`, `radius`.
     quantity: String,
     dimension: Dimension,
-    /// How far its limits are apart.
-    width: f64,
 }
 
 fn parameters(space: &DesignSpace) -> Vec<Parameter> {
@@ -102,7 +100,6 @@ fn parameters(space: &DesignSpace) -> Vec<Parameter> {
         group: group.name.clone(),
         quantity: group.name.rsplit('_').next().unwrap_or_default().to_owned(),
         dimension: group.dimension,
-        width: group.hi - group.lo,
     };
     space.names().into_iter().zip(groups).map(parameter).collect()
 }
@@ -118,7 +115,7 @@ impl Assignment<'_> {
     fn size(&self, parameter: &Parameter, nominal: f64) -> Result<ManufacturingError, ManufacturingErrorFault> {
         let fault =
             |message: String, hint: String| ManufacturingErrorFault { given: self.given.clone(), message, hint };
-        let Parameter { name, dimension, width, .. } = parameter;
+        let Parameter { name, dimension, .. } = parameter;
         let example = format!("write a share such as \"5 %\", or a quantity in {}", dimension.symbols().join(", "));
         let size = if let Some(percent) = self.value.strip_suffix('%') {
             let percent = percent.trim().parse().ok().filter(|percent| (0.0..=100.0).contains(percent));
@@ -128,15 +125,32 @@ impl Assignment<'_> {
         } else {
             parse_quantity(self.value, *dimension).map_err(|error| fault(error.to_string(), example))?
         };
+        let told = |value: f64| readable(value, nominal, dimension.si());
         // Of a parameter that is 0, a share is nothing.
-        if !(size > 0.0 && size <= *width) {
-            return Err(fault(
-                format!("{size} {} is no error of {name}, which is {nominal}", dimension.si()).replace("  ", " "),
-                format!("it has to be above 0 and at most as wide as the limits, {width} {}", dimension.si())
-                    .trim_end()
-                    .to_owned(),
-            ));
+        if !(size > 0.0 && size.is_finite()) {
+            let message = format!("{} is no error of {name}, which is {}", told(size), told(nominal));
+            return Err(fault(message, "it has to be above 0".into()));
+        }
+        let least = nominal - size;
+        if is_impossible(least, *dimension) {
+            let message = format!("with {} less than {}, {name} would be {}", told(size), told(nominal), told(least));
+            return Err(fault(message, "nothing can be built so: give a smaller error".into()));
         }
         Ok(ManufacturingError { size, text: self.value.to_owned() })
+    }
+}
+
+/// Whether nothing can be built with this value. Limits of the search are no matter here: an error of the workshop may leave them.
+fn is_impossible(value: f64, dimension: Dimension) -> bool {
+    match dimension {
+        Dimension::Length | Dimension::Mass | Dimension::Time => value <= 0.0,
+        Dimension::Stiffness | Dimension::TorsionalStiffness | Dimension::Damping => value < 0.0,
+        // Signs are directions, or nothing is known.
+        Dimension::None
+        | Dimension::Speed
+        | Dimension::Force
+        | Dimension::Torque
+        | Dimension::Angle
+        | Dimension::AngularSpeed => false,
     }
 }

@@ -15,6 +15,7 @@ use hwasp_training::{Assembly, EvaluateError, Reference};
 pub use self::errors::{ManufacturingError, ManufacturingErrorFault, manufacturing_errors};
 pub use self::list::{Sensitivities, Sensitivity, Side};
 use crate::error::WorkshopError;
+use crate::folder::writable;
 
 /// The sensitivities as programs have them.
 pub const TOLERANCES: &str = "tolerances.json";
@@ -27,14 +28,15 @@ pub fn errors_of(
     params: &[f32],
     given: &[String],
 ) -> Result<Vec<ManufacturingError>, ManufacturingErrorFault> {
-    let is_hand = crate::design::hand_of(assembly.experiment()).is_some();
-    manufacturing_errors(assembly.policy.space(), &assembly.built(params), is_hand, given)
+    let mechanism = assembly.experiment().task.built().mechanism.as_ref();
+    let common = mechanism.map(|mechanism| mechanism.manufacturing_errors()).unwrap_or_default();
+    manufacturing_errors(assembly.policy.space(), &assembly.built(params), &common, given)
 }
 
 /// Simulates the design in `params` as it should be built, and with every parameter off by its error to either side: `asked`
 /// are episodes and the root seed of their starts. `watch` is told how many designs are done, of how many.
 ///
-/// Values stay within the parameters' limits, so that a parameter near one of them is off by less.
+/// An error may put a parameter outside of the limits that the design was searched in.
 pub fn tolerances(
     assembly: &Assembly,
     params: &[f32],
@@ -53,8 +55,6 @@ pub fn tolerances(
     let nominal = Reference::new(assembly, &built, params, asked, executor)?;
     tell();
     let mut side = |i: usize, value: f64| -> Result<Side, EvaluateError> {
-        let (lo, hi) = space.bounds(i);
-        let value = value.clamp(lo, hi);
         let mut design = built.clone();
         design[i] = value;
         let (evaluation, change) = nominal.against(&design, params)?;
@@ -101,7 +101,7 @@ impl Sensitivities {
     pub fn write(&self, folder: &Path) -> Result<(), WorkshopError> {
         let mut json = serde_json::to_vec_pretty(self).map_err(|e| encode(TOLERANCES, &e))?;
         json.push(b'\n');
-        std::fs::create_dir_all(folder).map_err(|source| io_error("create", folder, source))?;
+        writable(folder)?;
         let path = folder.join(TOLERANCES);
         files::replace(&Disk, &path, &json).map_err(|source| io_error("write", &path, source))?;
         let plot = self.plot();

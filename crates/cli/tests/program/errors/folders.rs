@@ -62,6 +62,11 @@ pub(super) const CASES: &[Case] = &[
         }),
         "hwasp eval run",
     ),
+    case(
+        "An experiment that was changed after the training",
+        run!(|s| s.replace("run/experiment.toml", "gae_lambda = 0.95", "gae_lambda = 0.9")),
+        "hwasp eval run",
+    ),
     case("To write into a run that is there", Made(Sandbox::put_run), "hwasp train reach --out run"),
     case("To write into a file", Made(|s| s.write("file", "precious")), "hwasp train reach --out file"),
     case("To write into a folder in a file", Made(|s| s.write("file", "")), "hwasp train reach --out file/run"),

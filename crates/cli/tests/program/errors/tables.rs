@@ -83,6 +83,7 @@ pub(super) const CASES: &[Case] = &[
         "A policy of another shape",
         Made(|s| {
             s.put_run();
+            s.forget_experiment();
             s.replace("run/experiment.toml", "[controller]\nhidden = [16]", "[controller]\nhidden = [8]");
         }),
         "hwasp eval run",

@@ -1,32 +1,46 @@
 // From here on everything follows from the parameters.
 
 // Holes and widths; widths from the middle of a link, along its joints.
-bore = (shaft_diameter + clearance / 2) / 2;
-leg_hole = (leg_diameter + clearance) / 2;
-leg_circle = spring_diameter / 2 - 0.8 * leg_diameter;
-line_hole = line_diameter / 2 + clearance;
-knot = 2.5 * line_diameter;
-groove = line_diameter + clearance;
-channel = groove + clearance;
+bore = (axle + print_clearance / 2) / 2;
+pin_hole = (pin + print_clearance) / 2;
+pin_circle = max(pin_from, bore + wall + pin_hole);
+line_hole = line / 2 + print_clearance;
+knot = 2.5 * line;
+groove = line + print_clearance;
+channel = groove + print_clearance;
 pulley_half = groove + flange;
-prong_from = pulley_half + clearance;
-pocket_from = prong_from + prong;
-prong_to = pocket_from + spring_length + clearance;
-cheek_from = prong_to + clearance;
+prong_from = pulley_half + print_clearance;
+recess = prong_from + plate;
+// Springs on the side of positive x, and on the other side.
+sides = [ceil(springs / 2), floor(springs / 2)];
+prong_to = recess + sides[0] * spring_room + print_clearance;
+cheek_from = prong_to + print_clearance;
 half_width = cheek_from + cheek;
-pocket_radius = spring_diameter / 2 + 2.5 * clearance;
-lug = leg_circle + leg_hole + 4 * wall;
+holes = round(360 / hole_pitch);
 
-// The groove of a pulley whose line lies r from the shaft, the hole that the line ends in, and the flanges.
-function groove_bottom(r) = r - line_diameter / 2;
-function line_end(r) = max(r, bore + wall + line_hole);
-function rim(r) = line_end(r) + line_hole + 2 * clearance;
+// Legs of springs: beside the coil, clear of the axle, with walls between their holes; and the pocket for coil and legs.
+function leg_hole(kind) = (spring_wire[kind] + print_clearance) / 2;
+function leg_circle(kind) = max(
+    spring_outer[kind] / 2 + print_clearance + spring_wire[kind] / 2,
+    bore + wall + leg_hole(kind),
+    (2 * leg_hole(kind) + wall) / (2 * sin(hole_pitch / 2)));
+function pocket_radius(kind) = leg_circle(kind) + spring_wire[kind] / 2 + print_clearance;
+function pocket_from(kind, side) = sides[side] > 0 ? prong_to - sides[side] * spring_length[kind] - print_clearance : prong_to;
+lug = max([for (kind = [0:3]) leg_circle(kind) + leg_hole(kind)]) + 4 * wall;
+
+// The radius of a disc whose straight sides keep outside of a circle.
+function around(r) = r / cos(180 / $fn);
+// The groove of a pulley whose line lies r from the axle, the hole that the line ends in, and the flanges.
+function groove_bottom(r) = r - line / 2;
+function line_end(kind) = max(radius[kind], pocket_radius(kind) + wall + knot);
+function rim(r) = around(r + line_hole + wall);
+function pinned_rim(kind) = around(max(line_end(kind) + line_hole, pin_circle + pin_hole) + wall);
 // From a joint to where the whole width of a link begins, or its fork ends.
-function setback(link) = max(rim(link), link) + 1.5 * clearance;
-// Where the leg that does not turn is, in the frame of the open link.
-function fixed_leg(p) = leg_circle * [sin(deg(p)), cos(deg(p))];
+function setback(link) = max(rim(link), link) + 1.5 * print_clearance;
+// Where the hole for a fixed leg is, in the frame of the open link.
+function fixed_leg(kind, hole) = leg_circle(kind) * [sin(hole * hole_pitch), cos(hole * hole_pitch)];
 // From a proximal joint to the end of its pocket, where the link stands tilted from straight down.
-function reach(tilt) = max(link_radius[0], link_radius[2]) / cos(deg(tilt)) + 2.5 * clearance;
+function reach(tilt) = max(link_radius[0], link_radius[2]) / cos(deg(tilt)) + 2.5 * print_clearance;
 // What the open link leans on, in its frame.
 function stop(link) = [[0, 0], [link - frame / 2, 0], [link - frame / 2, setback(link)], [frame, setback(link)]];
 function deg(angle) = angle * 180 / PI;
@@ -41,12 +55,24 @@ module slices(from, to) {
     slice(-to, -from) children();
 }
 module disc(r, at = [0, 0]) translate(at) rotate(180 / $fn) circle(r);
+module hole(r, at) translate(at) rotate(180 / hole_fn) circle(r, $fn = hole_fn);
 module slot(low, high, r) hull() {
     disc(r, [0, low]);
     disc(r, [0, high]);
 }
 module strip(low, high) translate([-far, low]) square([2 * far, high - low]);
-module pins(r) for (side = [-1, 1]) disc(r, [side * leg_circle, 0]);
+module pins() for (side = [-1, 1]) disc(pin_hole, [side * pin_circle, 0]);
+// On the side of positive x (0) or on the other one (1).
+module sided(side, from, to) {
+    if (side == 0) slice(from, to) children();
+    else slice(-to, -from) children();
+}
+// What a distal line or its knot ends in: open where no wall would be left outside of it.
+module line_ends(away, size, edge) {
+    if (away + size > edge) slot(-far, -away, size);
+    else disc(size, [0, -away]);
+}
+module fixed_legs(kind) for (hole = [0:holes - 1]) translate(fixed_leg(kind, hole)) hole(leg_hole(kind), [0, 0]);
 
 module pulley(kind) {
     r = radius[kind];
@@ -55,12 +81,12 @@ module pulley(kind) {
         union() {
             slice(-groove, groove) disc(groove_bottom(r));
             slice(groove, pulley_half) disc(rim(r));
-            slice(-pulley_half, -groove) disc(pinned ? max(rim(r), leg_circle + leg_hole + wall) : rim(r));
+            slice(-pulley_half, -groove) disc(pinned ? pinned_rim(kind) : rim(r));
         }
         slice(-far, far) disc(bore);
         if (pinned) slice(-far, -groove) {
-            pins(leg_hole);
-            disc(line_hole, [0, line_end(r)]);
+            pins();
+            disc(line_hole, [0, -line_end(kind)]);
         }
     }
 }
@@ -89,25 +115,31 @@ module link(kind) {
         }
         slice(-far, far) slot(from + frame + inner, to - frame - inner, inner);
         slices(prong_from, prong_to) disc(bore);
-        slice(pocket_from, prong_to) disc(pocket_radius);
-        slice(prong_from, pocket_from) disc(leg_hole, [0, leg_circle]);
+        for (side = [0, 1]) if (sides[side] > 0) {
+            sided(side, pocket_from(kind, side), prong_to) disc(pocket_radius(kind));
+            sided(side, prong_from, pocket_from(kind, side)) hole(leg_hole(kind), [0, leg_circle(kind)]);
+        }
         if (distal(kind)) {
-            slice(-prong_to, -prong_from) pins(leg_hole);
-            slice(-pocket_from, -prong_from) disc(line_hole, [0, line_end(radius[kind])]);
-            slice(-prong_to, -pocket_from) disc(knot, [0, line_end(radius[kind])]);
+            slice(-pocket_from(kind, 1), -prong_from) pins();
+            slice(-recess, -prong_from) line_ends(line_end(kind), line_hole, r - wall);
+            slice(-prong_to, -recess) line_ends(line_end(kind), knot, r - wall);
         } else {
-            slice(-channel, channel) line_way(radius[kind], radius[kind + 1], length, r);
+            slice(-channel, channel) line_way(radius[kind], radius[kind + 1], length, r, inner);
             slices(cheek_from, half_width) disc(bore, [0, length]);
-            slice(cheek_from, half_width) disc(leg_hole, [0, length] + fixed_leg(preload[kind + 1]));
+            for (side = [0, 1]) if (sides[side] > 0)
+                sided(side, cheek_from, half_width) translate([0, length]) fixed_legs(kind + 1);
         }
     }
 }
 
-// The line's way between two pulleys, along their tangent on the closing side; open where the wall outside gets thin.
-module line_way(a, b, length, r) {
+// The line's way between two pulleys, along their tangent on the closing side; open where the wall outside gets thin, and to the
+// window (half of whose width is w) where that inside does.
+module line_way(a, b, length, r, w) {
     tilt = (a - b) / length;
     normal = [-sqrt(1 - tilt * tilt), tilt];
-    inner = [normal * (a - channel), normal * (b - channel) + [0, length]];
+    close = [normal * (a - channel), normal * (b - channel) + [0, length]];
+    thin = min(-close[0][0], -close[1][0]) - w < wall;
+    inner = [for (corner = close) thin ? [max(corner[0], wall - w), corner[1]] : corner];
     outer = max(a, b) + channel + 2 * wall > r
         ? [[-r - channel, inner[0][1]], [-r - channel, inner[1][1]]]
         : [normal * (a + channel), normal * (b + channel) + [0, length]];
@@ -143,12 +175,13 @@ module digit_room(digit) {
     closed = y - outward * reach(closed_angle - rest_angle);
     slice(-cheek_from, cheek_from) translate([min(open, closed), -lug])
         square([abs(open - closed), lug + setback(link_radius[kind])]);
-    slice(-channel, channel) translate([y - outward * radius[kind] - channel, 0])
-        square([2 * channel, 2 * palm_half_size[2] + channel]);
+    way = channel + print_clearance;
+    slice(-channel, channel) translate([y - outward * radius[kind] - way, 0])
+        square([2 * way, 2 * palm_half_size[2] + way]);
     slices(cheek_from, half_width) disc(bore, [y, 0]);
     // The link's x axis points along -x for digits that open along y.
-    mirror([outward > 0 ? 1 : 0, 0, 0]) slice(cheek_from, half_width)
-        disc(leg_hole, placed(digit, fixed_leg(preload[kind])));
+    for (side = [0, 1]) if (sides[side] > 0) sided(outward > 0 ? 1 - side : side, cheek_from, half_width)
+        for (index = [0:holes - 1]) hole(leg_hole(kind), placed(digit, fixed_leg(kind, index)));
 }
 
 module digit(digit) {

@@ -1,43 +1,44 @@
-//! The hand's links, pulleys and palm as solids to print, about what is bought: line, shafts and springs.
+//! The hand's links, pulleys and palm as solids to print, about what is bought: line, axles and springs.
 //!
 //! ```text
-//!   a joint from the closing side, the shaft along x
+//!   a joint from the closing side, the axle along x
 //!
 //!     cheek │ prong │pulley│ prong │ cheek
 //!    ┌────┐ ┌─────┐ ┌──┬──┐ ┌─────┐ ┌────┐
-//!    │    │ │     │ │  │  │ │ ┌───┤ │    │
-//!  ══╪════╪═╪═════╪═╪══╪══╪═╪═╪═══╪═╪════╪══▶ x
-//!    │    │ │     │ │  │  │ │ └───┤ │    │
+//!    │    │ ├───┐ │ │  │  │ │ ┌───┤ │    │
+//!  ══╪════╪═╪═══╪═╪═╪══╪══╪═╪═╪═══╪═╪════╪══▶ x
+//!    │    │ ├───┘ │ │  │  │ │ └───┤ │    │
 //!    └────┘ └─────┘ └──┴──┘ └─────┘ └────┘
-//!                    groove   spring
+//!            spring  groove   spring
 //! ```
 //!
-//! A link turns about its shaft by two prongs, between which the pulley sits; outside of them are the parent's cheeks. The
-//! spring sits in a pocket of the prong on the side of positive x, one leg in that prong and one in the cheek. The hole in
-//! the cheek is turned by the preload against the one in the prong, so that a spring whose legs are parallel when it is free
-//! has the preload of the design with the hand open.
+//! A link turns about its axle by two prongs, between which the pulley sits; outside of them are the parent's cheeks. Springs sit
+//! in pockets of the prongs, the first on the side of positive x, the second on the other side, and so on in turn. A pocket is as
+//! wide and as long as the springs that were chosen for the joint need. One leg of each is in the prong, the other in one of the
+//! holes of the cheek, which are as far apart as the [`Workshop`] says; which of them, the parts list says.
 //!
 //! With the hand open the link leans on both cheeks.
 //!
 //! The proximal pulley turns freely and carries a full turn of line, so that the line stays on it at every angle. The distal
-//! one is pinned to its link, and the line ends in it.
+//! one is pinned to its link, and the line ends in it after three quarters of a turn with the hand open.
 //!
 //! Every part is in the frame of its body in [`mjcf`](super::mjcf) and [`urdf`](super::urdf).
 
+mod layout;
 mod link;
 mod palm;
 mod pulley;
 mod scad;
-mod stock;
 
 use super::description::HandDescription;
 use super::error::HandError;
 use super::names::KINDS;
 use super::solid::{Layer, Mesh, stack};
 use super::space::DESIGN_LEN;
+use super::workshop::{SeatedSpring, Workshop};
+use layout::Layout;
 
 pub use scad::scad;
-pub use stock::Stock;
 
 /// The part that every digit is joined to.
 pub(super) const PALM_PART: &str = "palm";
@@ -61,15 +62,21 @@ pub struct Part {
     pub mesh: Mesh,
 }
 
-/// Palm, four links and four pulleys of a hand with this design (SI), or why they cannot be made of this stock. Every mesh is
-/// closed.
-pub fn parts(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -> Result<Vec<Part>, HandError> {
-    stock.check(hand, design)?;
-    let mut parts = vec![part(PALM_PART, 1, &palm::layers(hand, design, stock))?];
+/// Palm, four links and four pulleys of a hand with this design (SI) and these springs at each of [`KINDS`], or why they cannot be
+/// made in this workshop. Every mesh is closed.
+pub fn parts(
+    hand: &HandDescription,
+    design: &[f64; DESIGN_LEN],
+    springs: &[SeatedSpring; 4],
+    workshop: &Workshop,
+) -> Result<Vec<Part>, HandError> {
+    let layout = &Layout { workshop, springs };
+    layout.check(hand, design)?;
+    let mut parts = vec![part(PALM_PART, 1, &palm::layers(hand, design, layout))?];
     for kind in 0..KINDS.len() {
         let count = if kind < 2 { 1 } else { hand.fingers.len() };
-        parts.push(part(LINK_PARTS[kind], count, &link::layers(hand, design, stock, kind))?);
-        parts.push(part(PULLEY_PARTS[kind], count, &pulley::layers(design[kind], is_distal(kind), stock))?);
+        parts.push(part(LINK_PARTS[kind], count, &link::layers(hand, design, layout, kind))?);
+        parts.push(part(PULLEY_PARTS[kind], count, &pulley::layers(kind, design[kind], layout))?);
     }
     Ok(parts)
 }
@@ -92,7 +99,8 @@ fn between(
     outlines: impl Fn(f64) -> (Vec<super::solid::Outline>, Vec<super::solid::Outline>),
 ) -> Vec<Layer> {
     heights.sort_by(f64::total_cmp);
-    heights.dedup();
+    // Sums of the same widths may differ in their last bit.
+    heights.dedup_by(|later, earlier| *later - *earlier < 1e-9);
     let layer = |pair: &[f64]| {
         let (add, cut) = outlines(0.5 * (pair[0] + pair[1]));
         Layer { heights: [pair[0], pair[1]], add, cut }

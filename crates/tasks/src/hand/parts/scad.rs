@@ -5,16 +5,24 @@ use std::fmt::Write;
 use super::super::description::HandDescription;
 use super::super::error::HandError;
 use super::super::names::KINDS;
-use super::super::solid::SEGMENTS;
+use super::super::solid::{HOLE_SEGMENTS, SEGMENTS};
 use super::super::space::DESIGN_LEN;
-use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS, Stock, stock};
+use super::super::workshop::{SeatedSpring, Workshop};
+use super::layout::{FRAME, Layout, PIN_CIRCLE};
+use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS};
 
-/// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `stock.rs` in OpenSCAD's language.
+/// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `layout.rs` in OpenSCAD's language.
 const MODULES: &str = include_str!("hand.scad");
 
 /// The parts in OpenSCAD's language: parameters in mm, N·mm/rad and rad, then modules that make [`parts`](super::parts) of them.
-pub fn scad(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -> Result<String, HandError> {
-    stock.check(hand, design)?;
+pub fn scad(
+    hand: &HandDescription,
+    design: &[f64; DESIGN_LEN],
+    springs: &[SeatedSpring; 4],
+    workshop: &Workshop,
+) -> Result<String, HandError> {
+    let layout = Layout { workshop, springs };
+    layout.check(hand, design)?;
     let mut text = String::from("// An underactuated hand. Lengths in mm, angles in rad.\n\n");
     let names = [PALM_PART].into_iter().chain(LINK_PARTS).chain(PULLEY_PARTS).collect::<Vec<_>>().join(", ");
     // Writing to a string cannot fail.
@@ -24,9 +32,13 @@ pub fn scad(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -
     );
     let _ = writeln!(text, "// The design, in the order {}.", KINDS.join(", "));
     let quantities = [
-        ("radius", 1e3, "from the centre of the line to that of the shaft"),
-        ("stiffness", 1e3, "of the spring, N·mm/rad: to buy by; no shape follows from it"),
-        ("preload", 1.0, "of the spring with the hand open, rad"),
+        ("radius", 1e3, "from the centre of the line to that of the axle"),
+        ("stiffness", 1e3, "of a joint's springs together, N·mm/rad: to buy by; no shape follows from it"),
+        (
+            "preload",
+            1.0,
+            "of the springs with the hand open, rad: the hole of the fixed legs gives it; no shape follows from it",
+        ),
     ];
     for ((name, unit, meaning), values) in quantities.into_iter().zip(design.chunks(4)) {
         let _ = writeln!(text, "{name} = {}; // {meaning}", list(values, unit));
@@ -49,23 +61,39 @@ pub fn scad(hand: &HandDescription, design: &[f64; DESIGN_LEN], stock: &Stock) -
     ] {
         let _ = writeln!(text, "{name} = {value}; // {meaning}");
     }
-    text.push_str("\n// What is bought, and what the printer can do.\n");
-    for (name, value, meaning) in [
-        ("line_diameter", stock.line_diameter, "the tendon"),
-        ("shaft_diameter", stock.shaft_diameter, "of the joints"),
-        ("leg_diameter", stock.leg_diameter, "the wire of the springs' legs; pins of the distal pulleys"),
-        ("spring_diameter", stock.spring_diameter, "of the coils, outside"),
-        ("spring_length", stock.spring_length, "of the coils, along the shaft"),
-        ("clearance", stock.clearance, "between parts that move on each other"),
-        ("wall", stock.wall, "the thinnest wall"),
-        ("flange", stock::FLANGE, "of a pulley, each"),
-        ("prong", stock::PRONG, "beside a spring"),
-        ("cheek", stock::CHEEK, "of a link's fork and of the palm's lugs"),
-        ("frame", stock::FRAME, "around a link's window"),
+    text.push_str("\n// The springs of each joint, in the order of the design.\n");
+    for (name, values, meaning) in [
+        ("spring_wire", springs.map(|spring| spring.wire), "diameter of wire and legs"),
+        ("spring_outer", springs.map(|spring| spring.outer), "of the free coils, outside"),
+        ("spring_length", springs.map(|spring| spring.length), "of the coils with the joint closed, along the axle"),
     ] {
-        let _ = writeln!(text, "{name} = {}; // {meaning}", number(1e3 * value));
+        let _ = writeln!(text, "{name} = {}; // {meaning}", list(&values, 1e3));
     }
-    let _ = write!(text, "\n$fn = {SEGMENTS}; // segments of a circle\n\n{MODULES}");
+    text.push_str(
+        "\n// The workshop: what is bought, and what the printer can do. Names are those of `hwasp parts --bench`.\n",
+    );
+    let degrees = workshop.hole_pitch.to_degrees();
+    for (name, value, meaning) in [
+        ("line", 1e3 * workshop.line, "diameter of the tendon"),
+        ("axle", 1e3 * workshop.axle, "of the joints, diameter"),
+        ("pin", 1e3 * workshop.pin, "diameter of the pins of the distal pulleys"),
+        ("springs", f64::from(workshop.springs), "of a joint, on both sides of its pulley in turn"),
+        ("spring_room", 1e3 * workshop.spring_room, "for each of them, along the axle"),
+        ("hole_pitch", degrees, "between the holes for the fixed legs, degrees"),
+        ("print_clearance", 1e3 * workshop.print_clearance, "between parts that move on each other"),
+        ("wall", 1e3 * workshop.wall, "the thinnest"),
+        ("flange", 1e3 * layout.flange(), "of a pulley, each"),
+        ("plate", 1e3 * layout.plate(), "of a prong beside the longest springs"),
+        ("cheek", 1e3 * layout.cheek_width(), "of a link's fork and of the palm's lugs"),
+        ("frame", 1e3 * FRAME, "around a link's window"),
+        ("pin_from", 1e3 * PIN_CIRCLE, "from the axle to the pins, if there is room for them"),
+    ] {
+        let _ = writeln!(text, "{name} = {}; // {meaning}", number(value));
+    }
+    let _ = write!(
+        text,
+        "\n$fn = {SEGMENTS}; // segments of a circle\nhole_fn = {HOLE_SEGMENTS}; // of a hole for a leg\n\n{MODULES}"
+    );
     Ok(text)
 }
 
@@ -86,7 +114,8 @@ mod tests {
 
     #[test]
     fn parameters_are_at_the_top_and_every_part_can_be_shown() {
-        let text = scad(&HandDescription::default(), &SEARCHED, &Stock::default()).unwrap();
+        let springs = [SeatedSpring { wire: 0.38e-3, outer: 5.26e-3, length: 2.6e-3 }; 4];
+        let text = scad(&HandDescription::default(), &SEARCHED, &springs, &Workshop::default()).unwrap();
         let (top, rest) = text.split_once("$fn = 96;").unwrap();
         for line in [
             "radius = [10.9, 9.7, 7.7, 5.3]; ",
@@ -94,7 +123,9 @@ mod tests {
             "preload = [2, 0.36, 2.06, 0.63]; ",
             "link_length = [50, 40, 50, 40]; ",
             "base = [[0, -35], [25, 35], [-25, 35]]; ",
-            "line_diameter = 0.6; ",
+            "spring_outer = [5.26, 5.26, 5.26, 5.26]; ",
+            "line = 0.4; ",
+            "hole_pitch = 15; ",
         ] {
             assert!(top.lines().any(|found| found.starts_with(line)), "{line}:\n{top}");
         }

@@ -5,8 +5,22 @@ use proptest::prelude::*;
 use super::super::space::{HandRange, PAPER_HWASP, SEARCHED, SMALL_CENTRE};
 use super::*;
 
+mod walls;
+
+/// Those of the shipped hand.
+const SPRINGS: [SeatedSpring; 4] = [
+    SeatedSpring { wire: 0.38e-3, outer: 5.26e-3, length: 2.60e-3 },
+    SeatedSpring { wire: 0.36e-3, outer: 6.72e-3, length: 2.45e-3 },
+    SeatedSpring { wire: 0.45e-3, outer: 6.90e-3, length: 3.17e-3 },
+    SeatedSpring { wire: 0.38e-3, outer: 6.76e-3, length: 3.07e-3 },
+];
+
 fn made(design: &[f64; DESIGN_LEN]) -> Vec<Part> {
-    parts(&HandDescription::default(), design, &Stock::default()).unwrap()
+    parts(&HandDescription::default(), design, &SPRINGS, &Workshop::default()).unwrap()
+}
+
+fn layout(workshop: &Workshop) -> Layout<'_> {
+    Layout { workshop, springs: &SPRINGS }
 }
 
 fn find<'p>(parts: &'p [Part], name: &str) -> &'p Mesh {
@@ -25,14 +39,24 @@ fn the_parts_of_known_designs_are_solids() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// Anything that the large range allows, its corners included.
+    /// Anything that the large range allows and a groove can be made for, its corners included, with springs as large as there is
+    /// room for or small ones, on both sides or on one.
     #[test]
-    fn the_parts_of_any_design_are_solids(at in prop::array::uniform12(prop_oneof![Just(0.0), Just(1.0), 0.0..1.0])) {
+    fn the_parts_of_any_design_are_solids(
+        at in prop::array::uniform12(prop_oneof![Just(0.0), Just(1.0), 0.0..1.0]),
+        springs in 1..=2_u32,
+        size in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0],
+    ) {
+        let workshop = Workshop { springs, ..Workshop::default() };
+        let spring = SeatedSpring { wire: 0.0003 + 0.0003 * size, outer: 0.004 + 0.01 * size, length: 0.002 + 0.004 * size };
         let bounds = HandRange::Large.bounds();
-        let design = std::array::from_fn(|i| bounds[i].0 + at[i] * (bounds[i].1 - bounds[i].0));
-        let made = parts(&HandDescription::default(), &design, &Stock::default()).map(|_| ());
+        let mut design: [f64; DESIGN_LEN] = std::array::from_fn(|i| bounds[i].0 + at[i] * (bounds[i].1 - bounds[i].0));
+        for radius in &mut design[..4] {
+            *radius = radius.max(workshop.least_groove() + 0.5 * workshop.line);
+        }
+        let made = parts(&HandDescription::default(), &design, &[spring; 4], &workshop).map(|_| ());
         prop_assert!(made.is_ok(), "{design:?}: {made:?}");
     }
 }
@@ -40,45 +64,47 @@ proptest! {
 /// The groove's bottom is half of a line below the design's radius, but for the 5 µm by which a polygon is inside of its circle.
 #[test]
 fn the_line_runs_at_the_radius_of_the_design() {
-    let (stock, parts) = (Stock::default(), made(&SEARCHED));
+    let (workshop, parts) = (Workshop::default(), made(&SEARCHED));
+    let layout = layout(&workshop);
     for (kind, name) in PULLEY_PARTS.iter().enumerate() {
         // On the side without holes.
-        let inside_groove = |corner: &[f64; 3]| (corner[0] - stock.groove()).abs() < 1e-12;
+        let inside_groove = |corner: &[f64; 3]| (corner[0] - layout.groove()).abs() < 1e-12;
         let mut distances: Vec<f64> = find(&parts, name)
             .triangles()
             .flatten()
             .filter(inside_groove)
             .map(|[_, y, z]| y.hypot(z))
-            .filter(|&distance| distance > SEARCHED[kind] - stock.line_diameter)
+            .filter(|&distance| distance > SEARCHED[kind] - workshop.line)
             .collect();
         distances.sort_by(f64::total_cmp);
-        let bottom = SEARCHED[kind] - 0.5 * stock.line_diameter;
+        let bottom = SEARCHED[kind] - 0.5 * workshop.line;
         assert!((distances[0] - bottom).abs() < 5e-6, "{name}: {} of {bottom}", distances[0]);
         let rim = distances[distances.len() - 1];
-        assert!(rim > SEARCHED[kind] + 0.5 * stock.line_diameter, "{name}: the line stands out of {rim}");
+        assert!(rim > SEARCHED[kind] + 0.5 * workshop.line, "{name}: the line stands out of {rim}");
     }
 }
 
 /// Two flanges and a groove, less the bore, by hand.
 #[test]
 fn a_proximal_pulley_has_the_volume_of_its_discs() {
-    let (stock, radius) = (Stock::default(), 0.010);
+    let (workshop, radius) = (Workshop::default(), 0.010);
     let mut design = SMALL_CENTRE;
     design[0] = radius;
     let volume = find(&made(&design), "thumb_proximal_pulley").volume();
-    // 10 mm and 0.5 + 0.4; 10 less 0.3; 2 and 0.1 across.
-    let (rim, bottom, bore) = (0.0109, 0.0097, 0.00105);
-    let wanted = PI * (0.0036 * rim * rim + 0.0016 * bottom * bottom - 0.0052 * bore * bore);
-    assert!((volume / wanted - 1.0).abs() < 1e-3, "{volume} of {wanted}");
-    assert_eq!((stock.rim(radius), stock.bore()), (rim, bore));
+    // 10 mm and 0.4 + 0.6; 10 less 0.2; 2.5 and 0.1 across.
+    let (rim, bottom, bore) = (0.011, 0.0098, 0.0013);
+    let wanted = PI * (0.002 * rim * rim + 0.0012 * bottom * bottom - 0.0032 * bore * bore);
+    assert!((volume / wanted - 1.0).abs() < 2e-3, "{volume} of {wanted}");
+    let layout = layout(&workshop);
+    assert!((layout.rim(radius) - rim).abs() < 7e-6 && (layout.bore() - bore).abs() < 1e-12);
 }
 
 /// Parts lie in the boxes of the shapes that the simulation has, so that the palm and links that are built touch nothing that
 /// those do not.
 #[test]
 fn links_fill_the_boxes_of_their_capsules() {
-    let hand = HandDescription::default();
-    let parts = made(&SEARCHED);
+    let (hand, workshop) = (HandDescription::default(), Workshop::default());
+    let (layout, parts) = (layout(&workshop), made(&SEARCHED));
     for (name, link) in [
         ("thumb_proximal_link", &hand.thumb.proximal),
         ("thumb_distal_link", &hand.thumb.distal),
@@ -86,49 +112,78 @@ fn links_fill_the_boxes_of_their_capsules() {
         ("finger_distal_link", &hand.fingers[0].distal),
     ] {
         let [low, high] = find(&parts, name).bounds();
-        // The stop of a proximal link stands 1.2 mm beyond.
-        let end = if name.contains("proximal") { link.length + 0.0132 } else { link.length + link.radius };
-        let wanted = [-0.011, -link.radius, -link.radius, 0.011, link.radius, end];
+        // The stop of a proximal link stands 1.3 mm beyond.
+        let end = link.length + if name.contains("proximal") { layout.setback(link.radius) } else { link.radius };
+        let wanted = [-0.0118, -link.radius, -link.radius, 0.0118, link.radius, end];
         for (bound, wanted) in low.iter().chain(&high).zip(wanted) {
             assert!((bound - wanted).abs() < 1e-5, "{name}: {low:?} to {high:?}");
         }
     }
     let [low, high] = find(&parts, "palm").bounds();
     // The lugs are round, of straight sides.
-    assert!((low[2] + Stock::default().lug()).abs() < 1e-5 && (high[2] - 0.020).abs() < 1e-9);
+    assert!((low[2] + layout.lug()).abs() < 1e-5 && (high[2] - 0.020).abs() < 1e-9);
     assert!((high[0] - 0.037).abs() < 1e-9 && high[1] < 0.052);
 }
 
-/// The hole for the fixed leg is the one for the moving leg, turned back by the preload.
+/// 24 holes for fixed legs: hole 0 where the moving leg is, the others against the direction of closing, which is towards negative y.
 #[test]
-fn springs_are_wound_by_the_preload() {
-    let stock = Stock::default();
-    for (preload, [y, z]) in
-        [(0.0, [0.0, 1.0]), (PI / 2.0, [1.0, 0.0]), (PI, [0.0, -1.0]), (4.0, [4f64.sin(), 4f64.cos()])]
-    {
-        let leg = link::fixed_leg(preload, &stock);
-        let wanted = [y, z].map(|c| c * stock.leg_circle());
-        assert!((leg[0] - wanted[0]).abs() < 1e-15 && (leg[1] - wanted[1]).abs() < 1e-15, "{preload}: {leg:?}");
+fn holes_for_fixed_legs_are_as_far_apart_as_the_workshop_says() {
+    let workshop = Workshop::default();
+    let layout = layout(&workshop);
+    let legs: Vec<_> = link::fixed_legs(0, &layout).collect();
+    assert_eq!(legs.len(), 24);
+    for (hole, [y, z]) in [(0, [0.0, 1.0]), (6, [1.0, 0.0]), (12, [0.0, -1.0]), (2, [0.5, 0.75_f64.sqrt()])] {
+        let wanted = [y, z].map(|c| c * layout.leg_circle(0));
+        assert!((legs[hole][0] - wanted[0]).abs() < 1e-12 && (legs[hole][1] - wanted[1]).abs() < 1e-12, "{hole}");
     }
+}
+
+/// Print files had one pocket of a fixed size, for one spring, where the shopping sheet had two springs of other sizes.
+#[test]
+fn pockets_hold_the_chosen_springs_on_both_sides() {
+    let (workshop, parts) = (Workshop::default(), made(&SEARCHED));
+    let layout = layout(&workshop);
+    for (kind, name) in LINK_PARTS.iter().enumerate() {
+        for side in [1.0, -1.0] {
+            // The floor of a pocket: corners on its circle.
+            let floor = side * (layout.prong_end() - SPRINGS[kind].length - workshop.print_clearance);
+            let on_circle = |corner: &[f64; 3]| {
+                (corner[0] - floor).abs() < 1e-9
+                    && (corner[1].hypot(corner[2]) - layout.pocket_radius(kind)).abs() < 1e-6
+            };
+            let corners = find(&parts, name).triangles().flatten().filter(on_circle).count();
+            assert!(corners >= 96, "{name}: {corners} corners at {floor}");
+        }
+        // Coil and legs.
+        let needed = (0.5 * SPRINGS[kind].outer).max(layout.leg_circle(kind) + 0.5 * SPRINGS[kind].wire);
+        assert!(layout.pocket_radius(kind) > needed);
+    }
+    let one = Workshop { springs: 1, ..Workshop::default() };
+    assert_eq!(self::layout(&one).pocket(0, one.sides()[1]), None);
 }
 
 #[test]
 fn what_cannot_be_built_is_refused() {
-    let refused = |change: fn(&mut HandDescription, &mut [f64; DESIGN_LEN], &mut Stock)| {
-        let (mut hand, mut design, mut stock) = (HandDescription::default(), SEARCHED, Stock::default());
-        change(&mut hand, &mut design, &mut stock);
-        parts(&hand, &design, &stock).map(|_| ()).unwrap_err().to_string()
+    let refused = |change: fn(&mut HandDescription, &mut [f64; DESIGN_LEN], &mut Workshop)| {
+        let (mut hand, mut design, mut workshop) = (HandDescription::default(), SEARCHED, Workshop::default());
+        change(&mut hand, &mut design, &mut workshop);
+        parts(&hand, &design, &SPRINGS, &workshop).map(|_| ()).unwrap_err().to_string()
     };
-    assert_eq!(
-        refused(|_, design, _| design[3] = 0.0015),
-        "finger_distal_radius = 0.0015 m is outside of [0.00195, 0.012]; choose it between them"
-    );
+    let told = refused(|_, design, _| design[3] = 0.0015);
+    assert!(told.starts_with("finger_distal_radius = 0.0015 m is outside of [0.00209"), "{told}");
     assert!(refused(|_, design, _| design[0] = 0.0125).starts_with("thumb_proximal_radius = 0.0125 m"));
+    let told = refused(|_, design, workshop| (design[3], workshop.axle) = (0.003, 0.005));
+    assert!(told.contains("[0.00334"), "{told}");
+    let told = refused(|_, _, workshop| workshop.spring_room = 0.008);
+    assert!(told.starts_with("a joint of thumb.proximal, from cheek to cheek, takes 27.60 mm"), "{told}");
+    assert!(told.contains("this hand has 24.00 mm") && told.contains("`spring_room`"), "{told}");
+    let told = refused(|_, _, workshop| workshop.hole_pitch = 5f64.to_radians());
     assert!(
-        refused(|_, design, stock| (design[3], stock.shaft_diameter) = (0.003, 0.005)).contains("[0.00345, 0.012]")
+        told.starts_with("what is around an axle of thumb.proximal takes") && told.contains("hole_pitch"),
+        "{told}"
     );
-    assert!(refused(|_, _, stock| stock.spring_diameter = 0.004).starts_with("stock.spring_diameter = 0.004 m"));
-    assert!(refused(|_, _, stock| stock.wall = f64::NAN).starts_with("stock.wall = NaN m"));
+    let told = refused(|_, _, workshop| workshop.spring_room = 0.003);
+    assert!(told.starts_with("a spring of finger_proximal that is so long takes 3.17 mm"), "{told}");
     assert!(
         refused(|hand, _, _| {
             let link = &mut hand.thumb.distal;
@@ -142,4 +197,7 @@ fn what_cannot_be_built_is_refused() {
     );
     assert!(refused(|hand, _, _| hand.palm.half_size[2] = 0.005).starts_with("palm.half_size[2] = 0.005 m"));
     assert!(refused(|hand, _, _| hand.joint.rest_angle = 1.2).starts_with("joint.rest_angle = 1.2 rad"));
+    let broken = SeatedSpring { wire: f64::NAN, ..SPRINGS[0] };
+    let error = parts(&HandDescription::default(), &SEARCHED, &[broken; 4], &Workshop::default()).unwrap_err();
+    assert!(error.to_string().starts_with("thumb_proximal spring wire = NaN m"), "{error}");
 }

@@ -32,12 +32,17 @@ pub(in crate::hand) fn stack(layers: &[Layer]) -> Result<Mesh, InsertionError> {
         }
     }
     let plane = triangulate(&outlines)?;
+    // Which outlines a layer has, so that a point is held against each of them once.
+    let place = |outline: &Outline| outlines.iter().position(|other| *other == outline);
+    let places = |outlines: &[Outline]| outlines.iter().filter_map(place).collect::<Vec<usize>>();
+    let made_of: Vec<_> = layers.iter().map(|layer| (places(&layer.add), places(&layer.cut))).collect();
     let filled: Vec<Vec<bool>> = plane
         .inner_faces()
         .map(|face| {
             let Point2 { x, y } = face.center();
-            let inside = |outline: &Outline| contains(outline, [x, y]);
-            layers.iter().map(|l| l.add.iter().any(inside) && !l.cut.iter().any(inside)).collect()
+            let inside: Vec<bool> = outlines.iter().map(|outline| contains(outline, [x, y])).collect();
+            let any = |places: &[usize]| places.iter().any(|&place| inside[place]);
+            made_of.iter().map(|(add, cut)| any(add) && !any(cut)).collect()
         })
         .collect();
     let levels = layers.first().map(|layer| layer.heights[0]).into_iter().chain(layers.iter().map(|l| l.heights[1]));

@@ -6,4 +6,4 @@ mod outline;
 
 pub(super) use layers::{Layer, stack};
 pub use mesh::{Mesh, MeshError};
-pub(super) use outline::{Outline, SEGMENTS, disc, polygon, rectangle, slot};
+pub(super) use outline::{HOLE_SEGMENTS, Outline, SEGMENTS, around, disc, hole, polygon, rectangle, slot};

@@ -6,15 +6,29 @@ pub(in crate::hand) type Outline = Vec<[f64; 2]>;
 /// Segments of a full circle. Of 12 mm radius it is 6 µm off in the middle of a segment.
 pub(in crate::hand) const SEGMENTS: usize = 96;
 
+/// Segments of a hole for a wire. Of 1 mm radius it is 9 µm off in the middle of a segment.
+pub(in crate::hand) const HOLE_SEGMENTS: usize = 24;
+
 /// The regular polygon with its corners on a circle.
 pub(in crate::hand) fn disc(centre: [f64; 2], radius: f64) -> Outline {
-    arc(centre, radius, 0.0, SEGMENTS).collect()
+    arc(centre, radius, 0.0, SEGMENTS, SEGMENTS).collect()
+}
+
+/// The same of fewer segments, for small holes of which there are many.
+pub(in crate::hand) fn hole(centre: [f64; 2], radius: f64) -> Outline {
+    arc(centre, radius, 0.0, HOLE_SEGMENTS, HOLE_SEGMENTS).collect()
+}
+
+/// The radius of a disc whose straight sides keep outside of a circle.
+pub(in crate::hand) fn around(radius: f64) -> f64 {
+    radius / (std::f64::consts::PI / SEGMENTS as f64).cos()
 }
 
 /// Everything within `radius` of the segment from `low` up to `high`, along z.
 pub(in crate::hand) fn slot(y: f64, [low, high]: [f64; 2], radius: f64) -> Outline {
     let half = SEGMENTS / 2;
-    arc([y, low], radius, std::f64::consts::PI, half).chain(arc([y, high], radius, 0.0, half)).collect()
+    let arc = |z: f64, start: f64| arc([y, z], radius, start, half, SEGMENTS);
+    arc(low, std::f64::consts::PI).chain(arc(high, 0.0)).collect()
 }
 
 /// From `low` to `high` in y and z.
@@ -31,10 +45,10 @@ pub(in crate::hand) fn polygon(corners: &[[f64; 2]]) -> Outline {
     outline
 }
 
-/// Corners at the middles of `count` equal segments from `start` on, rad, so that no corner lies on an axis, where lines of
-/// other outlines are.
-fn arc([y, z]: [f64; 2], radius: f64, start: f64, count: usize) -> impl Iterator<Item = [f64; 2]> {
-    let step = std::f64::consts::TAU / SEGMENTS as f64;
+/// Corners at the middles of `count` of the `segments` of a circle from `start` on, rad, so that no corner lies on an axis, where
+/// lines of other outlines are.
+fn arc([y, z]: [f64; 2], radius: f64, start: f64, count: usize, segments: usize) -> impl Iterator<Item = [f64; 2]> {
+    let step = std::f64::consts::TAU / segments as f64;
     (0..count).map(move |i| {
         let (sin, cos) = (start + (i as f64 + 0.5) * step).sin_cos();
         [y + radius * cos, z + radius * sin]

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use hwasp_runs::files::{Disk, Files, told};
+use hwasp_runs::files::{Disk, Files, with_file_above};
 use hwasp_runs::{RunError, io_error};
 
 /// Whether files can be written into a folder, which is created where it is missing: to be asked before work that takes long.
 pub fn writable(folder: &Path) -> Result<(), RunError> {
-    Disk.create_folder(folder).map_err(|source| io_error("create", folder, told(folder, source)))?;
+    Disk.create_folder(folder).map_err(|source| io_error("create", folder, with_file_above(folder, source)))?;
     let trial = folder.join(".hwasp.partial");
     let error = |source| io_error("write into", folder, source);
     Disk.write(&trial, b"").map_err(error)?;

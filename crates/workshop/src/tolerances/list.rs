@@ -1,7 +1,7 @@
 //! The sensitivities as files and programs have them. Everything is in SI units.
 
 use hwasp_core::unit;
-use hwasp_runs::text::Shown;
+use hwasp_runs::text::ReadableUnit;
 use hwasp_training::{Change, Evaluation, MeanInterval, SuccessRate};
 use serde::{Deserialize, Serialize};
 
@@ -116,7 +116,7 @@ impl Sensitivity {
 pub(super) fn readable(value: f64, other: f64, si: &str) -> String {
     let shown = unit(si).map(|unit| unit.readable(other));
     let (symbol, to_si) = shown.map_or((si, 1.0), |unit| (unit.symbol, unit.to_si));
-    Shown { unit: symbol.to_owned(), to_si }.with_unit(significant(value / to_si) * to_si)
+    ReadableUnit { unit: symbol.to_owned(), to_si }.with_unit(significant(value / to_si) * to_si)
 }
 
 /// To four figures.
@@ -130,10 +130,13 @@ fn significant(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use hwasp_training::stats::Interval;
+
     use super::*;
 
     fn sensitivity(name: &str, minus: f64, plus: f64) -> Sensitivity {
-        let figure = |mean: f64| MeanInterval { mean, low: mean - 1.0, high: mean + 1.0 };
+        let interval = |mean: f64| Interval { low: mean - 1.0, high: mean + 1.0 };
+        let figure = |mean: f64| MeanInterval { mean, interval: Some(interval(mean)) };
         let side = |value: f64, mean: f64| Side {
             value,
             undiscounted_return: figure(10.0 + mean),

@@ -126,7 +126,7 @@ fn wrong_settings_are_faults_of_the_file() {
         ("30 cm", "95 cm", "the problem my-reach cannot be built: the rail ends at 0.9 m"),
         ("goal", "gaol", "unknown key `gaol` in [task]"),
         ("my-reach", "my-raech", "did you mean \"my-reach\"?"),
-        ("problem = \"my-reach\"\n", "", "set `problem` in [task] to one of `my-reach`, `stiffness`"),
+        ("problem = \"my-reach\"\n", "", "set `problem` in [task] to one of `stiffness`"),
     ] {
         let error = resolve(&EXPERIMENT.replace(from, to)).unwrap_err();
         assert!(error.contains(told), "{to}: {error}");

@@ -130,10 +130,13 @@ fn significant(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use hwasp_training::stats::Interval;
+
     use super::*;
 
     fn sensitivity(name: &str, minus: f64, plus: f64) -> Sensitivity {
-        let figure = |mean: f64| MeanInterval { mean, low: mean - 1.0, high: mean + 1.0 };
+        let interval = |mean: f64| Interval { low: mean - 1.0, high: mean + 1.0 };
+        let figure = |mean: f64| MeanInterval { mean, interval: Some(interval(mean)) };
         let side = |value: f64, mean: f64| Side {
             value,
             undiscounted_return: figure(10.0 + mean),

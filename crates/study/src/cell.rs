@@ -14,8 +14,7 @@ use hwasp_runs::{
 use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, train_from};
 
 use crate::error::CompareError;
-use crate::failure::Failure;
-use crate::outcome::MissingSeed;
+use crate::failure::{Failure, MissingSeed};
 
 /// The folder of the cells.
 pub(crate) const CELLS: &str = "cells";

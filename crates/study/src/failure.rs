@@ -1,4 +1,5 @@
-//! Trainings that fail whenever they are repeated: remembered in their cells, so that nobody waits for them twice.
+//! Seeds without figures, and trainings that fail whenever they are repeated: those are remembered in their cells, so that nobody
+//! waits for them twice.
 
 use std::path::Path;
 
@@ -49,4 +50,37 @@ impl Failure {
         let version = env!("CARGO_PKG_VERSION");
         Ok(found.filter(|failure| failure.experiment == experiment && failure.hwasp_version == version))
     }
+}
+
+/// A seed without figures.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MissingSeed {
+    /// The seed.
+    pub seed: u64,
+    /// Whether its training failed, and would fail again; otherwise it is not finished.
+    pub failed: bool,
+    /// Why there are no figures, in one line.
+    pub reason: String,
+}
+
+impl MissingSeed {
+    pub(crate) fn failed(seed: u64, reason: &str) -> Self {
+        Self { seed, failed: true, reason: one_line(reason) }
+    }
+
+    pub(crate) fn unfinished(seed: u64, reason: &str) -> Self {
+        Self { seed, failed: false, reason: one_line(reason) }
+    }
+}
+
+/// In words: `seed 3 failed: …`.
+impl std::fmt::Display for MissingSeed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let verb = if self.failed { "failed" } else { "is not finished" };
+        write!(f, "seed {} {verb}: {}", self.seed, self.reason)
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -8,7 +8,8 @@ use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use crate::cell::CellResult;
-use crate::outcome::{Contest, MissingSeed};
+use crate::failure::MissingSeed;
+use crate::outcome::Contest;
 
 /// The bootstrap of a comparison draws the same resamples every time.
 const RESAMPLES: [u8; 32] = *b"bootstrap of hwasp's comparisons";

@@ -10,7 +10,8 @@ use hwasp_training::Assembly;
 use crate::cell::{CELLS, Cell, State, Watch, Work, Worked};
 use crate::contender::Contender;
 use crate::error::CompareError;
-use crate::outcome::{MissingCell, MissingSeed, Outcome};
+use crate::failure::MissingSeed;
+use crate::outcome::{MissingCell, Outcome};
 
 /// What is compared.
 #[derive(Clone, Debug)]

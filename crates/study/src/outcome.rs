@@ -1,42 +1,9 @@
 //! What a grid came to: cells that finished, and cells that did not, with the reason.
 
 use hwasp_training::Piece;
-use serde::{Deserialize, Serialize};
 
 use crate::cell::{Cell, CellResult};
-
-/// A seed without figures.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MissingSeed {
-    /// The seed.
-    pub seed: u64,
-    /// Whether its training failed, and would fail again; otherwise it is not finished.
-    pub failed: bool,
-    /// Why there are no figures, in one line.
-    pub reason: String,
-}
-
-impl MissingSeed {
-    pub(crate) fn failed(seed: u64, reason: &str) -> Self {
-        Self { seed, failed: true, reason: one_line(reason) }
-    }
-
-    pub(crate) fn unfinished(seed: u64, reason: &str) -> Self {
-        Self { seed, failed: false, reason: one_line(reason) }
-    }
-}
-
-/// In words: `seed 3 failed: …`.
-impl std::fmt::Display for MissingSeed {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let verb = if self.failed { "failed" } else { "is not finished" };
-        write!(f, "seed {} {verb}: {}", self.seed, self.reason)
-    }
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
+use crate::failure::MissingSeed;
 
 /// A cell without figures.
 #[derive(Clone, Debug, PartialEq, Eq)]

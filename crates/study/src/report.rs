@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::cell::CellResult;
 use crate::error::CompareError;
+use crate::failure::MissingSeed;
 use crate::figures::{MethodFigures, Pair, default_threshold};
-use crate::outcome::{MissingSeed, Outcome};
-use crate::table;
+use crate::outcome::Outcome;
 
 /// The figures as JSON.
 pub const COMPARISON: &str = "comparison.json";
@@ -57,16 +57,6 @@ impl Comparison {
         let improvement = pairs.map(|(i, j)| Pair::of(&methods[i], &methods[j])).collect::<Result<Vec<_>, _>>()?;
         let other_cells = outcome.others.clone();
         Ok(Self { experiment: experiment.to_owned(), threshold, methods, improvement, other_cells })
-    }
-
-    /// The tables as Markdown.
-    pub fn markdown(&self) -> String {
-        table::markdown(self)
-    }
-
-    /// One line per method.
-    pub fn csv(&self) -> String {
-        table::csv(self)
     }
 
     /// Labels with the seeds that there should be, where some did not finish: for the legends of pictures.

@@ -11,7 +11,19 @@ use crate::report::Comparison;
 /// What there is not.
 const NONE: &str = "–";
 
-pub(crate) fn markdown(comparison: &Comparison) -> String {
+impl Comparison {
+    /// The tables as Markdown.
+    pub fn markdown(&self) -> String {
+        markdown(self)
+    }
+
+    /// One line per method; a field is empty where there is nothing to tell.
+    pub fn csv(&self) -> String {
+        csv(self)
+    }
+}
+
+fn markdown(comparison: &Comparison) -> String {
     let Comparison { experiment, methods, improvement, .. } = comparison;
     let mut text = format!("# {experiment}\n\n");
     let groups: Vec<&str> =
@@ -116,8 +128,7 @@ fn interval(value: f64, interval: Option<Interval>, decimals: usize) -> String {
     }
 }
 
-/// One line per method; a field is empty where there is nothing to tell.
-pub(crate) fn csv(comparison: &Comparison) -> String {
+fn csv(comparison: &Comparison) -> String {
     let mut text = String::from(
         "method,seeds,evaluation,evaluation_low,evaluation_high,area_under_curve,area_low,area_high,threshold,\
          threshold_seeds,threshold_env_steps,env_steps,wall_s,failed_candidates,asked_seeds,failed_seeds,budget,piece,\

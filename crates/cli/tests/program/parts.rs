@@ -71,3 +71,22 @@ fn parts_of_a_hand() {
     let errors = String::from_utf8_lossy(&blocked.stderr).into_owned();
     assert!(blocked.status.code() == Some(1) && errors.contains("hint: name another folder with --out"), "{errors}");
 }
+
+/// Both simulated for half a minute and then could not write: nothing was printed. The folder is tried first, and what was found
+/// is printed even if a file cannot be written afterwards.
+#[test]
+fn what_was_found_is_told_even_if_it_cannot_be_written() {
+    let sandbox = Sandbox::with_run("parts-unwritable");
+    sandbox.write("file", "");
+    let line = "tolerances run --episodes 4 --out";
+    let blocked = sandbox.run(&format!("{line} file"));
+    let told = String::from_utf8_lossy(&blocked.stderr).into_owned();
+    assert!(blocked.status.code() == Some(1) && blocked.stdout.is_empty(), "{told}");
+    assert!(told.contains("file") && !told.contains("designs simulated"), "{told}");
+
+    std::fs::create_dir_all(sandbox.path("taken/tolerances.json")).unwrap();
+    let late = sandbox.run(&format!("{line} taken"));
+    let (found, told) = (String::from_utf8_lossy(&late.stdout), String::from_utf8_lossy(&late.stderr));
+    assert!(found.contains("change of return") && found.contains("gear"), "{found}");
+    assert!(late.status.code() == Some(1) && told.contains("tolerances.json"), "{told}");
+}

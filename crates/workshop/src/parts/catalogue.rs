@@ -229,7 +229,15 @@ fn places(header: &StringRecord) -> Result<(Places, Vec<String>), String> {
         .find(|&name| place(name).is_none() && !COLUMNS.iter().any(|column| column.name == name && column.optional));
     match (missing, place("part")) {
         (None, Some(part)) => Ok(((part, COLUMNS.each_ref().map(|column| place(column.name))), ignored)),
-        (missing, _) => Err(format!("column `{}` is missing", missing.unwrap_or("part"))),
+        (missing, _) => {
+            let missing = missing.unwrap_or("part");
+            let others = if ignored.is_empty() {
+                String::new()
+            } else {
+                format!("; not known are {}", listed(ignored.iter().take(MOST_SHOWN).map(String::as_str)))
+            };
+            Err(format!("column `{missing}` is missing{others}"))
+        }
     }
 }
 

@@ -107,6 +107,3 @@ fn between(
     };
     heights.windows(2).map(layer).collect()
 }
-
-#[cfg(test)]
-mod tests;

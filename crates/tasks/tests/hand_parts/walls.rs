@@ -96,14 +96,37 @@ fn every_wall_is_as_thick_as_the_workshop_says() {
     assert!(least < 1.01 * workshop.wall, "{least}");
 }
 
-/// Along the axle: flanges, cheeks, and what is between pulley and springs.
+/// Along the axle: flanges, cheeks, floors of pockets. Through points all over a part, how much material there is between entering and
+/// leaving it.
 #[test]
 fn walls_across_the_axle_are_as_thick_too() {
-    for wall in [0.6e-3, 1.4e-3] {
-        let workshop = Workshop { wall, spring_room: 0.005, ..Workshop::default() };
-        let layout = layout(&workshop);
-        let plates = (0..4).map(|kind| layout.pocket(kind, 1).unwrap() - layout.prong());
-        let walls = [layout.flange(), layout.cheek_width(), layout.recess() - layout.prong()];
-        assert!(plates.chain(walls).all(|thick| thick >= wall - 1e-12), "{wall}");
+    let workshop = Workshop::default();
+    let longest = [SeatedSpring { wire: 0.6e-3, outer: 0.014, length: 0.006 }; 4];
+    let mut least = f64::INFINITY;
+    for Part { name, mesh, .. } in parts(&HandDescription::default(), &SEARCHED, &longest, &workshop).unwrap() {
+        let flat = |corners: &[[f64; 3]; 3]| corners.iter().all(|corner| (corner[0] - corners[0][0]).abs() < 1e-12);
+        let faces: Vec<_> = mesh.triangles().filter(flat).collect();
+        let [low, high] = mesh.bounds();
+        for (i, j) in (0..48).flat_map(|i| (0..48).map(move |j| (i, j))) {
+            let at = |axis: usize, k: u32| low[axis] + (high[axis] - low[axis]) * (f64::from(k) + 0.3217) / 48.0;
+            let point = [at(1, i), at(2, j)];
+            let mut crossed: Vec<f64> =
+                faces.iter().filter(|face| is_over(face, point)).map(|face| face[0][0]).collect();
+            crossed.sort_by(f64::total_cmp);
+            assert!(crossed.len().is_multiple_of(2), "{name}: open at {point:?}");
+            for pair in crossed.chunks(2) {
+                assert!(pair[1] - pair[0] > workshop.wall - 1e-9, "{name}: {pair:?} at {point:?}");
+                least = least.min(pair[1] - pair[0]);
+            }
+        }
     }
+    // The floor behind the longest springs, and flanges: 1 mm.
+    assert!((least - 0.001).abs() < 1e-9, "{least}");
+}
+
+/// Whether a triangle that stands across the axle has a point of the plane inside.
+fn is_over(face: &[[f64; 3]; 3], [y, z]: [f64; 2]) -> bool {
+    let turn = |a: [f64; 3], b: [f64; 3]| (b[1] - a[1]) * (z - a[2]) - (b[2] - a[2]) * (y - a[1]) > 0.0;
+    let [a, b, c] = *face;
+    turn(a, b) == turn(b, c) && turn(b, c) == turn(c, a)
 }

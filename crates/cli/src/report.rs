@@ -159,17 +159,14 @@ pub(crate) fn exported(spec: &Experiment, out: &Path, files: &[ExportFile], left
 /// A sound experiment.
 pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
     let policy = &assembly.policy;
-    let training = match assembly.generation() {
-        Some((popsize, each)) => {
-            let generations = spec.train.env_steps / (popsize as u64 * each);
-            format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
-        }
-        None => {
-            let ((iterations, last), usual) = (assembly.iterations(), spec.train.episodes_per_iteration);
-            let last = if last == usual as u64 { String::new() } else { format!(", the last of {last}") };
-            let steps = spec.train.episode_steps;
-            format!("{} iterations of {usual} episodes of {steps} steps{last}", grouped(iterations))
-        }
+    let training = if let Some((popsize, each)) = assembly.generation() {
+        let generations = spec.train.env_steps / (popsize as u64 * each);
+        format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
+    } else {
+        let ((iterations, last), usual) = (assembly.iterations(), spec.train.episodes_per_iteration);
+        let last = if last == usual as u64 { String::new() } else { format!(", the last of {last}") };
+        let steps = spec.train.episode_steps;
+        format!("{} iterations of {usual} episodes of {steps} steps{last}", grouped(iterations))
     };
     let design = policy.space().names().len();
     format!(

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use hwasp_core::Dimension;
 use hwasp_problem::{AnyProblem, Built};
-use hwasp_settings::{AnySettings, Item, Keys, Section, described, listed, read, written};
+use hwasp_settings::{AnySettings, Item, Keys, Section, described, either, listed, read, written};
 
 use crate::built::{COMMON_KEYS, MOST_STEPS, build};
 use crate::catalogue::Catalogue;
@@ -120,7 +120,7 @@ fn refuse_foreign(section: &mut Section<'_>, problem: &dyn AnyProblem, catalogue
         }
     }
     for (key, owners) in foreign {
-        section.refuse(&key, &format!("it is for problem = {}, and this is {}", owners.join(" or "), problem.name()));
+        section.refuse(&key, &format!("it is for problem = {}, and this is {}", either(&owners), problem.name()));
     }
 }
 

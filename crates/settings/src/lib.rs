@@ -53,6 +53,6 @@ pub use layers::{LONGEST_FILE, Layers};
 pub use schema::object_schema;
 pub use section::{Reader, Section};
 pub use source::Origin;
-pub use suggest::{listed, nearest};
+pub use suggest::{either, listed, nearest};
 pub use tree::{Entry, Node, Table, Value};
 pub use values::with_unit;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::fault::Faults;
 use crate::source::{Finding, Origin, Source};
-use crate::suggest::{listed, nearest};
+use crate::suggest::{either, listed, nearest};
 use crate::text::shorten;
 use crate::tree::{Entry, Node, Table, Value};
 
@@ -103,7 +103,7 @@ impl<'r> Reader<'r> {
             let owners = |name: &str| {
                 let sections = known.iter().filter(|(_, other)| other == name);
                 let sections = sections.map(|(s, _)| if s.is_empty() { "the top".into() } else { format!("[{s}]") });
-                sections.collect::<Vec<_>>().join(" or ")
+                either(&sections.collect::<Vec<_>>())
             };
             let hint = if let Some(near) = nearest(key, here()) {
                 format!("did you mean `{near}`?")

@@ -4,6 +4,9 @@ use std::process::Command;
 
 use crate::sandbox::Sandbox;
 
+/// Where the sources are, wherever the program was built.
+const CHECKOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
 /// The program with arguments that hold any characters.
 fn run(sandbox: &Sandbox, arguments: &[&str]) -> (Option<i32>, String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hwasp"));
@@ -23,7 +26,7 @@ fn nothing_in_names_moves_the_cursor() {
         (&["eval", "a\u{202e}b"], "a\u{fffd}b does not exist"),
         (&["reproduce", "\u{1b}[31mfig"], "[31mfig` is none of the paper's figures"),
         (&["train", "reach", "--seed", "\u{1b}[2J"], "it has to be a whole number"),
-        (&["init", "lamp", "--name", "a\u{2066}b"], "`a\u{fffd}b` is no name for a package"),
+        (&["init", "lamp", "--name", "a\u{2066}b", "--path", CHECKOUT], "`a\u{fffd}b` is no name for a package"),
     ] {
         let (code, stdout, stderr) = run(&sandbox, arguments);
         assert_eq!((code, &*stdout), (Some(2), ""), "{stderr}");

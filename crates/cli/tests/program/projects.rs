@@ -33,7 +33,10 @@ fn files(folder: &Path) -> Vec<String> {
 #[test]
 fn a_project_says_what_it_is_and_what_to_do_next() {
     let sandbox = Sandbox::new("init");
-    let told = sandbox.transcript(&["init lamp", "init --template mjcf --name desk-lamp in/mjcf"]);
+    let told = sandbox.transcript(&[
+        &format!("init lamp --path {}", root()),
+        &format!("init --template mjcf --name desk-lamp in/mjcf --path {}", root()),
+    ]);
     insta::assert_snapshot!(told.replace(&root(), "CHECKOUT"));
     let manifest = String::from_utf8(sandbox.read("lamp/Cargo.toml")).unwrap();
     insta::assert_snapshot!("the_manifest_of_a_project", manifest.replace(&root(), "CHECKOUT"));
@@ -45,7 +48,7 @@ fn a_project_says_what_it_is_and_what_to_do_next() {
 fn nothing_is_left_open_in_its_files() {
     let sandbox = Sandbox::new("init-files");
     for template in ["plant", "mjcf"] {
-        assert!(sandbox.run(&format!("init --template {template} {template}")).status.success());
+        assert!(sandbox.run(&format!("init --template {template} {template} --path {}", root())).status.success());
         for file in files(&sandbox.path(template)) {
             let text = String::from_utf8(sandbox.read(&format!("{template}/{file}"))).unwrap();
             assert!(!text.contains("{{"), "{template}/{file} has a place that is not filled:\n{text}");
@@ -70,7 +73,11 @@ fn a_fresh_project_is_locked() {
         || ["PATH", "HOME", "CARGO_HOME", "RUSTUP_HOME", "RUSTUP_TOOLCHAIN"].map(|key| (key, std::env::var_os(key)));
     let tools = || tools().into_iter().filter_map(|(key, value)| Some((key, value?)));
     for template in ["plant", "mjcf"] {
-        let output = sandbox.command(&format!("init --template {template} {template}")).envs(tools()).output().unwrap();
+        let output = sandbox
+            .command(&format!("init --template {template} {template} --path {}", root()))
+            .envs(tools())
+            .output()
+            .unwrap();
         assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
         let mut cargo = Command::new(env!("CARGO"));
         cargo.args(["metadata", "--locked", "--offline", "--format-version", "1"]);
@@ -119,6 +126,20 @@ fn a_copy_of_the_program_elsewhere_asks_for_the_sources() {
     assert!(run(&["init", "other", "--path", &root]).status.success());
     let manifest = String::from_utf8(sandbox.read("other/Cargo.toml")).unwrap();
     assert!(manifest.contains(&format!("path = \"{root}/crates/core\"")), "{manifest}");
+
+    // In a checkout it finds the sources itself.
+    let checkout = elsewhere.join("checkout");
+    fs::create_dir_all(checkout.join("target")).unwrap();
+    for name in ["crates", "Cargo.toml", "Cargo.lock"] {
+        std::os::unix::fs::symlink(Path::new(&root).join(name), checkout.join(name)).unwrap();
+    }
+    let program = checkout.join("target/hwasp");
+    fs::copy(env!("CARGO_BIN_EXE_hwasp"), &program).unwrap();
+    let output =
+        Command::new(&program).args(["init", "lamp"]).current_dir(sandbox.path("")).env_clear().output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let manifest = String::from_utf8(sandbox.read("lamp/Cargo.toml")).unwrap();
+    assert!(manifest.contains(&format!("path = \"{}/crates/core\"", checkout.display())), "{manifest}");
     fs::remove_dir_all(&elsewhere).unwrap();
 }
 
@@ -126,8 +147,9 @@ fn a_copy_of_the_program_elsewhere_asks_for_the_sources() {
 fn a_folder_with_version_control_alone_is_empty() {
     let sandbox = Sandbox::new("init-git");
     fs::create_dir_all(sandbox.path("lamp/.git")).unwrap();
-    assert!(sandbox.run("init lamp").status.success());
-    let again = sandbox.run("init lamp");
+    let line = format!("init lamp --path {}", root());
+    assert!(sandbox.run(&line).status.success());
+    let again = sandbox.run(&line);
     assert_eq!(again.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&again.stderr).contains("lamp is not empty: it has .cargo, .gitignore"));
 }

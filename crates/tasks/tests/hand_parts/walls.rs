@@ -17,7 +17,7 @@ fn section(mesh: &Mesh, x: f64) -> Vec<Edge> {
             .filter_map(|i| {
                 let ([ax, ay, az], [bx, by, bz]) = (corners[i], corners[(i + 1) % 3]);
                 let at = (x - ax) / (bx - ax);
-                ((ax > x) != (bx > x)).then(|| [ay + at * (by - ay), az + at * (bz - az)])
+                ((ax > x) != (bx > x)).then_some([ay + at * (by - ay), az + at * (bz - az)])
             })
             .collect();
         let [from, to] = crossings[..] else { continue };

@@ -25,14 +25,14 @@ fn list(path: &Path) -> PartsList {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
 }
 
-/// The corners of an STL file, m.
-fn corners(file: &Path) -> Vec<[f64; 3]> {
+/// The triangles of an STL file, m.
+fn triangles(file: &Path) -> Vec<[[f64; 3]; 3]> {
     let bytes = fs::read(file).unwrap();
     let number = |at: usize| 1e-3 * f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()));
     let triangles = (bytes.len() - 84) / 50;
     let corner = |at: usize| [number(at), number(at + 4), number(at + 8)];
     // A normal of three numbers comes first.
-    (0..triangles).flat_map(|i| [12, 24, 36].map(|offset| corner(84 + 50 * i + offset))).collect()
+    (0..triangles).map(|i| [12, 24, 36].map(|offset| corner(84 + 50 * i + offset))).collect()
 }
 
 fn away(corner: &[f64; 3]) -> f64 {
@@ -55,8 +55,8 @@ fn what_is_printed_fits_what_is_bought() {
     let list = list(&path);
     let Workshop { axle, print_clearance, line, .. } = list.workshop;
     for JointParts { joint, pulley, spring, .. } in &list.joints {
-        let corners_of = |what: &str| corners(&folder.join(format!("{joint}_{what}.stl")));
-        let found = corners_of("pulley");
+        let found_in = |what: &str| triangles(&folder.join(format!("{joint}_{what}.stl")));
+        let found = found_in("pulley").concat();
         let bore = found.iter().map(away).fold(f64::INFINITY, f64::min);
         near(2.0 * bore, axle + 0.5 * print_clearance, &format!("bore of {joint}"));
         // Beyond the bore, at the edge of the groove, on the side without holes.
@@ -68,11 +68,14 @@ fn what_is_printed_fits_what_is_bought() {
         // A pocket on each side, for coil and legs.
         let radius = list.workshop.leg_circle(&spring.seated()) + 0.5 * spring.wire + print_clearance;
         assert!(2.0 * radius > spring.outer + print_clearance);
-        let found = corners_of("link");
+        let found = found_in("link");
+        // Its side stands along the axle.
+        let is_side = |corners: &&[[f64; 3]; 3]| corners.iter().all(|corner| (away(corner) - radius).abs() < 1e-7);
+        let is_flat = |corners: &[[f64; 3]; 3]| corners.iter().all(|corner| corner[0] == corners[0][0]);
         for side in [1.0, -1.0] {
             let depths: Vec<f64> = (found.iter())
-                .filter(|corner| side * corner[0] > 0.0 && (away(corner) - radius).abs() < 1e-7)
-                .map(|corner| side * corner[0])
+                .filter(|corners| side * corners[0][0] > 0.0 && is_side(corners) && !is_flat(corners))
+                .flat_map(|corners| corners.map(|corner| side * corner[0]))
                 .collect();
             let ends = [f64::min, f64::max].map(|end| depths.iter().copied().reduce(end).unwrap());
             near(ends[1] - ends[0], spring.length_wound + print_clearance, &format!("pocket of {joint}"));
@@ -81,7 +84,7 @@ fn what_is_printed_fits_what_is_bought() {
     // Holes for the fixed legs of the distal joints, in the cheeks of the proximal links; 24 corners each, in several triangles.
     for (kind, length) in [(0, 0.050), (2, 0.050)] {
         let spring = list.joints[kind + 1].spring.seated();
-        let found = corners(&folder.join(format!("{}_link.stl", list.joints[kind].joint)));
+        let found = triangles(&folder.join(format!("{}_link.stl", list.joints[kind].joint))).concat();
         let outside = found.iter().map(|corner| corner[0]).fold(0.0, f64::max);
         for (hole, side) in (0..24).flat_map(|hole| [(hole, 1.0), (hole, -1.0)]) {
             let (sin, cos) = (f64::from(hole) * 15f64.to_radians()).sin_cos();

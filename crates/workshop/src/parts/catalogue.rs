@@ -234,7 +234,7 @@ fn places(header: &StringRecord) -> Result<(Places, Vec<String>), String> {
             let others = if ignored.is_empty() {
                 String::new()
             } else {
-                format!("; not known are {}", listed(ignored.iter().take(MOST_SHOWN).map(String::as_str)))
+                format!("; unknown: {}", listed(ignored.iter().take(MOST_SHOWN).map(String::as_str)))
             };
             Err(format!("column `{missing}` is missing{others}"))
         }

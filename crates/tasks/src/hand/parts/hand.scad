@@ -151,10 +151,11 @@ module palm() {
         union() {
             slice(-palm_half_size[0], palm_half_size[0])
                 translate([-palm_half_size[1], 0]) square(2 * [palm_half_size[1], palm_half_size[2]]);
-            for (digit = [0:2]) translate([base[digit][0], 0, 0]) slices(cheek_from, half_width) {
-                disc(lug, [base[digit][1], 0]);
-                polygon([for (corner = stop(link_radius[digit == 0 ? 0 : 2])) placed(digit, corner)]);
-            }
+            for (digit = [0:2], side = [0, 1]) translate([base[digit][0], 0, 0])
+                sided(side, cheek_from, lug_to(digit, side)) {
+                    disc(lug, [base[digit][1], 0]);
+                    polygon([for (corner = stop(link_radius[digit == 0 ? 0 : 2])) placed(digit, corner)]);
+                }
         }
         for (digit = [0:2]) translate([base[digit][0], 0, 0]) digit_room(digit);
     }
@@ -165,6 +166,10 @@ function placed(digit, p) = [
     base[digit][1] + sign(base[digit][1]) * (cos(deg(rest_angle)) * p[0] + sin(deg(rest_angle)) * p[1]),
     sin(deg(rest_angle)) * p[0] - cos(deg(rest_angle)) * p[1],
 ];
+
+// Where a lug ends: at the side of the palm, where less than a wall would be left to that.
+function rest(digit, side) = palm_half_size[0] - (side == 0 ? 1 : -1) * base[digit][0] - half_width;
+function lug_to(digit, side) = half_width + (rest(digit, side) < wall ? rest(digit, side) : 0);
 
 // What the palm leaves free for a digit.
 module digit_room(digit) {
@@ -178,10 +183,12 @@ module digit_room(digit) {
     way = channel + print_clearance;
     slice(-channel, channel) translate([y - outward * radius[kind] - way, 0])
         square([2 * way, 2 * palm_half_size[2] + way]);
-    slices(cheek_from, half_width) disc(bore, [y, 0]);
-    // The link's x axis points along -x for digits that open along y.
-    for (side = [0, 1]) if (sides[side] > 0) sided(outward > 0 ? 1 - side : side, cheek_from, half_width)
-        for (index = [0:holes - 1]) hole(leg_hole(kind), placed(digit, fixed_leg(kind, index)));
+    for (side = [0, 1]) sided(side, cheek_from, lug_to(digit, side)) {
+        disc(bore, [y, 0]);
+        // The link's x axis points along -x for digits that open along y.
+        if (sides[outward > 0 ? 1 - side : side] > 0)
+            for (index = [0:holes - 1]) hole(leg_hole(kind), placed(digit, fixed_leg(kind, index)));
+    }
 }
 
 module digit(digit) {

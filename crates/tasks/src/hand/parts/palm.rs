@@ -10,10 +10,15 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
     let [half_x, half_y, half_z] = hand.palm.half_size;
     let body = rectangle([-half_y, half_y], [0.0, 2.0 * half_z]);
     let digits = || hand.digits().into_iter().zip([0, 2, 2]);
+    // Where a lug ends on a side: at the side of the palm, where less than a wall would be left to that.
+    let end = |digit: &FingerDescription, side: f64| {
+        let rest = half_x - side * digit.base[0] - layout.half_width();
+        layout.half_width() + if rest < layout.workshop.wall { rest } else { 0.0 }
+    };
     let heights = digits().flat_map(|(digit, _)| {
-        [layout.channel(), layout.cheek(), layout.half_width()]
-            .into_iter()
-            .flat_map(|height| [digit.base[0] - height, digit.base[0] + height])
+        [-1.0, 1.0].into_iter().flat_map(move |side| {
+            [layout.channel(), layout.cheek(), end(digit, side)].map(|height| digit.base[0] + side * height)
+        })
     });
     between(heights.chain([-half_x, half_x]).collect(), |x| {
         let (mut add, mut cut) = (vec![body.clone()], Vec::new());
@@ -25,7 +30,7 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
             }
             if away < layout.cheek() {
                 cut.push(pocket(digit, hand, layout));
-            } else if away < layout.half_width() {
+            } else if away < end(digit, from_digit.signum()) {
                 let centre = [digit.base[1], 0.0];
                 let (sin, cos) = hand.joint.rest_angle.sin_cos();
                 // From the frame of the open link.

@@ -8,15 +8,14 @@ use hwasp_settings::text::printable;
 use crate::args::{InitArgs, TemplateArg};
 use crate::failure::Failure;
 use crate::output;
-use crate::project::{self, Lock, Project, ProjectError, Template};
+use crate::project::{Lock, Project, ProjectError, Template};
 
 pub(crate) fn run(args: &InitArgs) -> Result<(), Failure> {
     let template = match args.template {
         TemplateArg::Plant => Template::Plant,
         TemplateArg::Mjcf => Template::Mjcf,
     };
-    let checkout = args.path.as_deref().map_or_else(project::own_checkout, project::checkout).map_err(failed)?;
-    let project = Project::new(&args.folder, args.name.as_deref(), template, checkout).map_err(failed)?;
+    let project = Project::new(&args.folder, args.name.as_deref(), template, args.path.as_deref()).map_err(failed)?;
     if project.write().map_err(failed)? == Lock::FirstBuild {
         output::remark("note: Cargo could not be asked about Cargo.lock: the first build writes it anew");
     }

@@ -76,12 +76,13 @@ pub(crate) enum ProjectError {
 const MARK: &str = "crates/training/Cargo.toml";
 
 impl Project {
-    /// Checks what was asked for. Without a `name` the folder's is taken, in lower case and with hyphens for spaces.
+    /// Checks what was asked for. Without a `name` the folder's is taken, in lower case and with hyphens for spaces; without the
+    /// path of a `checkout`, the one in which this program lies.
     pub(crate) fn new(
         folder: &Path,
         name: Option<&str>,
         template: Template,
-        checkout: Checkout,
+        checkout: Option<&Path>,
     ) -> Result<Self, ProjectError> {
         let found = entries(folder)?;
         if !found.is_empty() {
@@ -89,6 +90,7 @@ impl Project {
         }
         let name = name.map_or_else(|| name::of_folder(folder), str::to_owned);
         name::check(&name)?;
+        let checkout = checkout.map_or_else(own_checkout, self::checkout)?;
         Ok(Self { folder: folder.to_owned(), name, template, checkout })
     }
 
@@ -139,14 +141,14 @@ pub(crate) enum Lock {
 }
 
 /// The checkout of hwasp at `path`, as an absolute path.
-pub(crate) fn checkout(path: &Path) -> Result<Checkout, ProjectError> {
+fn checkout(path: &Path) -> Result<Checkout, ProjectError> {
     let no_checkout = || ProjectError::NoCheckout { path: path.to_owned() };
     let absolute = path.canonicalize().map_err(|_| no_checkout())?;
     if is_checkout(&absolute) { Ok(Checkout(absolute)) } else { Err(no_checkout()) }
 }
 
 /// The checkout that this program was built in: the one in whose target folder it lies.
-pub(crate) fn own_checkout() -> Result<Checkout, ProjectError> {
+fn own_checkout() -> Result<Checkout, ProjectError> {
     let program = std::env::current_exe().unwrap_or_default();
     let checkout = program.ancestors().find(|folder| is_checkout(folder));
     checkout.map(|folder| Checkout(folder.to_owned())).ok_or(ProjectError::NoSources)

@@ -113,6 +113,10 @@ impl Experiment {
 /// # Errors
 /// Everything that is wrong, at once.
 pub fn resolve(layers: Layers, method: Option<&str>, catalogue: &Catalogue) -> Result<Experiment, Faults> {
+    if catalogue.learners().is_empty() {
+        let hint = "`Catalogue::with_learner` adds one, such as `PpoKind`".to_owned();
+        return Err(Faults::single("catalogue", "it has no learner to train with".to_owned(), Some(hint)));
+    }
     let layers = match method {
         Some(method) => layers.with_option(format!("--method {method}"), "method", method),
         None => layers,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_experiment::{LONGEST_FILE, Layers, load};
+use hwasp_experiment::{Catalogue, LONGEST_FILE, Layers, load};
 use hwasp_testing::{catalogue, layers, resolve};
 
 /// The faults of a text that is not what it should be.
@@ -85,6 +85,14 @@ fn nothing_at_all() {
     insta::assert_snapshot!("empty_name", faults("name = ''\ntask = { problem = 'stifness' }", None));
     // What does not depend on the missing problem is told all the same.
     insta::assert_snapshot!("no_problem", faults("name = 'my'\n[ppo]\nclip_ratio = 3\n[task]\nsegments = 4\n", None));
+}
+
+/// A catalogue without learners ended in a panic.
+#[test]
+fn a_catalogue_without_learners() {
+    let layers = Layers::from_text("my.toml", "name = 'my'\ntask = { problem = 'reach' }").unwrap();
+    let told = hwasp_experiment::resolve(layers, None, &Catalogue::default()).unwrap_err().to_string();
+    assert!(told.contains("it has no learner to train with") && told.contains("with_learner"), "{told}");
 }
 
 #[test]

@@ -23,6 +23,7 @@ use std::io::{self, BufRead, Write};
 
 use error::shorten;
 use hwasp_training::MetricsRow;
+use serde::{Deserialize, Serialize};
 
 pub use error::MetricsError;
 
@@ -108,7 +109,7 @@ impl<W: Write> MetricsWriter<W> {
 }
 
 /// A table read back.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MetricsTable {
     /// The names of the learner's metrics, in the order of the rows' `learner`.
     pub learner: Vec<String>,

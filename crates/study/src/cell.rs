@@ -5,13 +5,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use hwasp_core::Serial;
-use hwasp_experiment::EXPERIMENT;
+use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
 use hwasp_plot::{PlotOptions, curves_svg, plot_options};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{
     Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, Summary, encode, saved_experiment,
 };
+use hwasp_training::collect::ExperimentText;
 use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, train_from};
+use serde::{Deserialize, Serialize};
 
 use crate::error::CompareError;
 use crate::failure::{Failure, MissingSeed};
@@ -33,8 +35,35 @@ pub struct Cell {
     pub(crate) assembly: Assembly,
 }
 
+/// A cell as it is asked for: a plain value. Whoever gets it rebuilds the cell, and gives the same bits.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CellRequest {
+    /// The contender.
+    pub label: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Its run folder.
+    pub path: PathBuf,
+    /// Its experiment, every setting resolved.
+    pub experiment: ExperimentText,
+}
+
+impl CellRequest {
+    /// The cell, put together from the problems and learners of a catalogue.
+    ///
+    /// # Errors
+    /// Where the catalogue does not have what the experiment names, or the experiment cannot be put together.
+    pub fn cell(&self, catalogue: &Catalogue) -> Result<Cell, CompareError> {
+        let layers = Layers::from_text(EXPERIMENT, self.experiment.as_str())?;
+        let experiment = resolve(layers, None, catalogue)?;
+        let assembly = Assembly::new(&experiment)
+            .map_err(|source| CompareError::Assemble { label: self.label.clone(), source })?;
+        Ok(Cell { label: self.label.clone(), seed: self.seed, path: self.path.clone(), assembly })
+    }
+}
+
 /// A cell that is done.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellResult {
     /// The contender.
     pub label: String,
@@ -70,8 +99,9 @@ pub(crate) enum State {
     Failed(Failure),
 }
 
-/// What became of the work on a cell.
-pub(crate) enum Worked {
+/// What became of a cell: a plain value, as its request is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum CellAnswer {
     /// It is done.
     Finished(Box<CellResult>),
     /// It is not.
@@ -82,10 +112,13 @@ pub(crate) enum Worked {
 
 /// How a cell is worked on.
 #[derive(Clone, Copy)]
-pub(crate) struct Work<'a> {
-    pub(crate) command_line: &'a [String],
-    pub(crate) watch: &'a dyn Watch,
-    pub(crate) stop: &'a AtomicBool,
+pub struct Work<'a> {
+    /// The command, for the provenance of its run folder.
+    pub command_line: &'a [String],
+    /// Is told how it gets on.
+    pub watch: &'a dyn Watch,
+    /// Ends the work when it is set.
+    pub stop: &'a AtomicBool,
 }
 
 impl Work<'_> {
@@ -133,18 +166,30 @@ impl Cell {
         MissingSeed::unfinished(self.seed, how)
     }
 
-    /// Brings it to its end, unless another process is at it.
-    pub(crate) fn work(&self, index: usize, work: Work<'_>) -> Result<Worked, CompareError> {
+    /// Asks for it.
+    ///
+    /// # Errors
+    /// Where the experiment cannot be written.
+    pub fn request(&self) -> Result<CellRequest, CompareError> {
+        let experiment = ExperimentText::from(self.toml()?);
+        Ok(CellRequest { label: self.label.clone(), seed: self.seed, path: self.path.clone(), experiment })
+    }
+
+    /// Brings it to its end, unless another process is at it. `index` is how `watch` knows it.
+    ///
+    /// # Errors
+    /// Of its folder. A training that fails is an answer.
+    pub fn work(&self, index: usize, work: Work<'_>) -> Result<CellAnswer, CompareError> {
         loop {
             match self.state()? {
-                State::Finished => return Ok(Worked::Finished(Box::new(self.result()?))),
+                State::Finished => return Ok(CellAnswer::Finished(Box::new(self.result()?))),
                 State::Failed(failure) => {
-                    return Ok(Worked::Missing(MissingSeed::failed(self.seed, &failure.reason)));
+                    return Ok(CellAnswer::Missing(MissingSeed::failed(self.seed, &failure.reason)));
                 }
-                State::Open if work.stopped() => return Ok(Worked::Missing(self.stopped())),
+                State::Open if work.stopped() => return Ok(CellAnswer::Missing(self.stopped())),
                 State::Open => match self.open(work) {
                     Ok(resumed) => return self.train(index, resumed, work),
-                    Err(RunError::InUse { owner, .. }) => return Ok(Worked::Held(owner)),
+                    Err(RunError::InUse { owner, .. }) => return Ok(CellAnswer::Held(owner)),
                     // Another process finished it, or began it, between our look and our grasp: look again.
                     Err(RunError::Finished { .. }) => {}
                     Err(RunError::Exists { .. }) if self.is_begun() => {}
@@ -155,18 +200,18 @@ impl Cell {
     }
 
     /// Waits for another process to end with it, and takes it over where that gave up.
-    pub(crate) fn wait(&self, index: usize, owner: &str, work: Work<'_>) -> Result<Worked, CompareError> {
+    pub(crate) fn wait(&self, index: usize, owner: &str, work: Work<'_>) -> Result<CellAnswer, CompareError> {
         work.watch.waiting(index, owner);
         loop {
             std::thread::sleep(PAUSE);
             if work.stopped() {
-                return Ok(Worked::Missing(self.stopped()));
+                return Ok(CellAnswer::Missing(self.stopped()));
             }
             if !matches!(self.state()?, State::Open) {
                 work.watch.joined(index);
             }
             match self.work(index, work)? {
-                Worked::Held(_) => {}
+                CellAnswer::Held(_) => {}
                 worked => return Ok(worked),
             }
         }
@@ -182,7 +227,7 @@ impl Cell {
         }
     }
 
-    fn train(&self, index: usize, resumed: Resumed, work: Work<'_>) -> Result<Worked, CompareError> {
+    fn train(&self, index: usize, resumed: Resumed, work: Work<'_>) -> Result<CellAnswer, CompareError> {
         let Resumed { mut folder, found } = resumed;
         found.warn();
         let mut told = Told { index, watch: work.watch };
@@ -195,16 +240,16 @@ impl Cell {
                 folder.finish(&self.assembly, &trained, &curves_svg)?;
                 // There may be hundreds of cells.
                 folder.remove_checkpoints()?;
-                Ok(Worked::Finished(Box::new(self.result()?)))
+                Ok(CellAnswer::Finished(Box::new(self.result()?)))
             }
             Err(TrainError::Interrupted { .. }) => {
                 folder.settle()?;
-                Ok(Worked::Missing(self.stopped()))
+                Ok(CellAnswer::Missing(self.stopped()))
             }
             Err(error) => {
                 work.watch.failed(index, &error);
                 let reason = error.to_string();
-                Ok(Worked::Missing(match Failure::of(&error, &self.toml()?) {
+                Ok(CellAnswer::Missing(match Failure::of(&error, &self.toml()?) {
                     Some(failure) => {
                         failure.write(&self.path)?;
                         MissingSeed::failed(self.seed, &reason)

@@ -7,7 +7,7 @@ use hwasp_core::Executor;
 use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
 use hwasp_training::Assembly;
 
-use crate::cell::{CELLS, Cell, State, Watch, Work, Worked};
+use crate::cell::{CELLS, Cell, CellAnswer, State, Watch, Work};
 use crate::contender::Contender;
 use crate::error::CompareError;
 use crate::failure::MissingSeed;
@@ -106,7 +106,7 @@ pub fn run(
     let held: Vec<(usize, String)> = worked
         .iter()
         .enumerate()
-        .filter_map(|(i, worked)| if let Worked::Held(owner) = worked { Some((i, owner.clone())) } else { None })
+        .filter_map(|(i, worked)| if let CellAnswer::Held(owner) = worked { Some((i, owner.clone())) } else { None })
         .collect();
     let waited = executor.map(held.len(), |k| cells[held[k].0].wait(held[k].0, &held[k].1, work));
     for ((i, _), waited) in held.iter().zip(waited) {
@@ -116,9 +116,9 @@ pub fn run(
     for (cell, worked) in cells.iter().zip(worked) {
         let label = cell.label.clone();
         match worked {
-            Worked::Finished(result) => outcome.finished.push(*result),
-            Worked::Missing(seed) => outcome.missing.push(MissingCell { label, seed }),
-            Worked::Held(owner) => {
+            CellAnswer::Finished(result) => outcome.finished.push(*result),
+            CellAnswer::Missing(seed) => outcome.missing.push(MissingCell { label, seed }),
+            CellAnswer::Held(owner) => {
                 let reason = format!("process {owner} trains it");
                 outcome.missing.push(MissingCell { label, seed: MissingSeed::unfinished(cell.seed, &reason) });
             }

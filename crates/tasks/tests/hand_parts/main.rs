@@ -43,6 +43,18 @@ fn the_parts_of_known_designs_are_solids() {
     }
 }
 
+/// A design that random ones came to, of which a triangle was 10 nm high.
+#[test]
+fn the_parts_of_a_design_with_a_corner_on_an_edge_are_solids() {
+    let mut design = [0.0021, 0.0021, 0.0021, 0.003929652534914504, 0.002, 0.002, 0.002, 0.002, 0.0, 0.0, 0.0, 0.0];
+    let workshop = Workshop { springs: 1, ..Workshop::default() };
+    let spring = SeatedSpring { wire: 0.0003, outer: 0.004, length: 0.002 };
+    for step in 0..4 {
+        design[3] += 1e-9 * f64::from(step);
+        parts(&HandDescription::default(), &design, &[spring; 4], &workshop).unwrap();
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 

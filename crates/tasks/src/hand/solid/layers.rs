@@ -4,7 +4,7 @@
 //! inside or outside of each of them. Prisms over the triangles fill a layer; the faces between a filled prism and an empty
 //! one are the surface. Neighbours share corners on every level, so that nothing gapes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
@@ -14,6 +14,8 @@ use super::outline::{Outline, contains};
 
 /// Edges that are shorter become points, m.
 const SHORTEST: f64 = 2e-6;
+/// Triangles that are lower become lines, m: well above what a file resolves.
+const LOWEST: f64 = 5e-8;
 
 /// A layer between two heights along x, m: what is in an outline of `add`, and in none of `cut`.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,33 +73,26 @@ fn triangulate(outlines: &[&Outline]) -> Result<Plane, InsertionError> {
 /// The triangles between filled and empty, seen from outside counterclockwise. Corner `v` of the plane on level `l` is
 /// vertex `l`·n + `v`.
 fn surface(plane: &Plane, filled: &[Vec<bool>], layers: usize) -> Vec<[usize; 3]> {
-    let corner_of = merged(plane);
+    let faces = faces(plane);
     let at = |corner: usize, level: usize| level * plane.num_vertices() + corner;
-    // The outer face is the first, and empty.
-    let is_filled = |face: usize, layer: usize| face > 0 && filled[face - 1][layer];
+    let owner: HashMap<[usize; 2], usize> =
+        faces.iter().flat_map(|face| edges(face.corners).map(|edge| (edge, face.index))).collect();
     let mut triangles = Vec::new();
     let mut walls = BTreeSet::new();
-    for face in plane.inner_faces() {
-        let index = face.fix().index();
-        let [a, b, c] = face.vertices().map(|vertex| corner_of[vertex.fix().index()]);
-        for level in (0..=layers).filter(|_| a != b && b != c && c != a) {
-            let below = level > 0 && is_filled(index, level - 1);
-            let above = level < layers && is_filled(index, level);
+    for &Face { corners: [a, b, c], index } in &faces {
+        for level in 0..=layers {
+            let below = level > 0 && filled[index][level - 1];
+            let above = level < layers && filled[index][level];
             match (below, above) {
                 (true, false) => triangles.push([at(a, level), at(b, level), at(c, level)]),
                 (false, true) => triangles.push([at(a, level), at(c, level), at(b, level)]),
                 _ => {}
             }
         }
-        for edge in face.adjacent_edges() {
-            let beyond = edge.rev().face().fix().index();
-            let [from, to] = [edge.from(), edge.to()].map(|vertex| corner_of[vertex.fix().index()]);
-            for layer in (0..layers).filter(|&layer| is_filled(index, layer) && !is_filled(beyond, layer)) {
-                // Where a sliver was merged away, its two sides meet and leave nothing.
-                if from != to && !walls.remove(&(layer, to, from)) {
-                    walls.insert((layer, from, to));
-                }
-            }
+        for [from, to] in edges([a, b, c]) {
+            let beyond = owner.get(&[to, from]);
+            let open = |&layer: &usize| filled[index][layer] && beyond.is_none_or(|&other| !filled[other][layer]);
+            walls.extend((0..layers).filter(open).map(|layer| (layer, from, to)));
         }
     }
     for (layer, from, to) in walls {
@@ -106,6 +101,61 @@ fn surface(plane: &Plane, filled: &[Vec<bool>], layers: usize) -> Vec<[usize; 3]
         triangles.push([at(from, low), at(to, high), at(from, high)]);
     }
     triangles
+}
+
+/// A triangle of the plane.
+#[derive(Clone, Copy)]
+struct Face {
+    corners: [usize; 3],
+    /// The face of the triangulation that it is, or was a part of.
+    index: usize,
+}
+
+fn edges([a, b, c]: [usize; 3]) -> [[usize; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// The triangles of the plane that are more than points and lines. Where a corner lies almost on an edge, the triangle between
+/// them is left out, and the one beyond the edge is divided at the corner.
+fn faces(plane: &Plane) -> Vec<Face> {
+    let corner_of = merged(plane);
+    let position: Vec<Point2<f64>> = plane.vertices().map(|vertex| vertex.position()).collect();
+    let mut faces: Vec<Face> = plane
+        .inner_faces()
+        .enumerate()
+        .map(|(index, face)| Face { corners: face.vertices().map(|vertex| corner_of[vertex.fix().index()]), index })
+        .filter(|Face { corners: [a, b, c], .. }| a != b && b != c && c != a)
+        .collect();
+    // Each turn leaves out one triangle and adds one, of which the next turn is no worse in the end.
+    for _ in 0..faces.len() {
+        let Some((sliver, apex)) = faces.iter().enumerate().find_map(|(i, face)| Some((i, apex(&position, face)?)))
+        else {
+            break;
+        };
+        let Face { corners, .. } = faces.swap_remove(sliver);
+        let [v, p, q] = [0, 1, 2].map(|k| corners[(apex + k) % 3]);
+        let beyond = faces.iter().position(|face| edges(face.corners).contains(&[q, p]));
+        if let Some(beyond) = beyond {
+            let Face { corners, index } = faces[beyond];
+            let w = corners.into_iter().find(|&corner| corner != p && corner != q).unwrap_or(v);
+            faces[beyond].corners = [q, v, w];
+            faces.push(Face { corners: [v, p, w], index });
+        }
+    }
+    faces
+}
+
+/// Which corner of a triangle lies almost on the edge opposite to it, its longest.
+fn apex(position: &[Point2<f64>], face: &Face) -> Option<usize> {
+    let at = face.corners.map(|corner| position[corner]);
+    let length = |k: usize| {
+        let [from, to] = [at[(k + 1) % 3], at[(k + 2) % 3]];
+        (to.x - from.x).hypot(to.y - from.y)
+    };
+    let longest = (0..3).max_by(|&i, &k| length(i).total_cmp(&length(k)))?;
+    let [a, b, c] = at;
+    let twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    (twice_area.abs() < LOWEST * length(longest)).then_some(longest)
 }
 
 /// For each vertex the one that stands for it: outlines that cross close to a corner leave edges too short for a file.
@@ -121,7 +171,7 @@ fn merged(plane: &Plane) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outline::{area, disc, rectangle};
+    use super::super::outline::{area, disc, polygon, rectangle};
     use super::*;
 
     #[test]
@@ -141,6 +191,24 @@ mod tests {
         let bounds = mesh.bounds();
         for (bound, wanted) in bounds.concat().iter().zip([0.0, -0.02, -0.01, 0.010, 0.02, 0.01]) {
             assert!((bound - wanted).abs() < 1e-12, "{bounds:?}");
+        }
+    }
+
+    /// Outlines that almost touch left triangles too low for a file, and the hand of some designs could not be printed.
+    #[test]
+    fn a_corner_almost_on_an_edge() {
+        let plate = rectangle([-0.02, 0.02], [-0.01, 0.01]);
+        for off in [1e-9, 9e-9, 3e-8, -9e-9] {
+            // Its tip is so far from the upper side.
+            let tip = polygon(&[[-0.004, 0.0], [0.004, 0.0], [0.0003, 0.01 - off]]);
+            let layers = [
+                Layer { heights: [0.0, 0.003], add: vec![plate.clone(), tip.clone()], cut: vec![] },
+                Layer { heights: [0.003, 0.005], add: vec![tip.clone()], cut: vec![] },
+            ];
+            let mesh = stack(&layers).unwrap();
+            mesh.check().unwrap_or_else(|error| panic!("{off}: {error}"));
+            let wanted = 0.003 * area(&plate) + 0.002 * area(&tip);
+            assert!((mesh.volume() / wanted - 1.0).abs() < 1e-5, "{off}: {} of {wanted}", mesh.volume());
         }
     }
 

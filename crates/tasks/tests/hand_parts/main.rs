@@ -46,7 +46,8 @@ fn the_parts_of_known_designs_are_solids() {
 /// A design that random ones came to, of which a triangle was 10 nm high.
 #[test]
 fn the_parts_of_a_design_with_a_corner_on_an_edge_are_solids() {
-    let mut design = [0.0021, 0.0021, 0.0021, 0.003929652534914504, 0.002, 0.002, 0.002, 0.002, 0.0, 0.0, 0.0, 0.0];
+    let mut design =
+        [0.0021, 0.0021, 0.0021, 0.003_929_652_534_914_504, 0.002, 0.002, 0.002, 0.002, 0.0, 0.0, 0.0, 0.0];
     let workshop = Workshop { springs: 1, ..Workshop::default() };
     let spring = SeatedSpring { wire: 0.0003, outer: 0.004, length: 0.002 };
     for step in 0..4 {

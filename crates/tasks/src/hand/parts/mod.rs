@@ -99,8 +99,8 @@ fn between(
     outlines: impl Fn(f64) -> (Vec<super::solid::Outline>, Vec<super::solid::Outline>),
 ) -> Vec<Layer> {
     heights.sort_by(f64::total_cmp);
-    // Sums of the same widths may differ in their last bit.
-    heights.dedup_by(|later, earlier| *later - *earlier < 1e-9);
+    // Heights that nearly agree are one: a layer between them would be too low for a file.
+    heights.dedup_by(|later, earlier| *later - *earlier < 1e-6);
     let layer = |pair: &[f64]| {
         let (add, cut) = outlines(0.5 * (pair[0] + pair[1]));
         Layer { heights: [pair[0], pair[1]], add, cut }

@@ -1,18 +1,21 @@
 //! The command line.
 
+mod designs;
 mod parse;
+mod studies;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use hwasp_experiment::{Method, TrainSettings};
-use hwasp_export::{Kind, MOST_SAMPLES};
+use hwasp_experiment::Method;
 use hwasp_plot::XAxis;
 use hwasp_report::play;
 
-use parse::{finite, path, seconds, side, threads, whole};
+pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
+use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
+pub(crate) use studies::{CompareArgs, ReproduceArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,15 +27,6 @@ Examples:
 
 Exit status: 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong, 130 if it was asked to
 stop (Ctrl-C, SIGTERM).";
-
-/// The greatest seed: what TOML can write.
-const LAST_SEED: u64 = i64::MAX as u64;
-/// The longest training, steps; `train.env_steps` of an experiment has the same limit.
-const MOST_STEPS: u64 = 1_000_000_000_000;
-/// The most episodes of an evaluation; `train.evaluation_episodes` has the same limit.
-const MOST_EPISODES: u64 = 1_000_000;
-/// The most seeds of a comparison: a picture shows a thousand runs.
-const MOST_SEEDS: u64 = 100;
 
 /// Design a robot's body and its controller together.
 ///
@@ -242,137 +236,6 @@ pub(crate) struct EvalArgs {
 }
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct DesignArgs {
-    /// A run folder, as `hwasp train` writes one
-    #[arg(value_parser = path())]
-    pub(crate) run: PathBuf,
-    /// Where a hand's closing chart is drawn, closing.svg and closing.png [default: the run folder]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-    /// Print JSON, for scripts; the chart is then drawn only where --out says
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct ExportArgs {
-    /// A run folder, as `hwasp train` writes one
-    #[arg(value_parser = path())]
-    pub(crate) run: PathBuf,
-    /// The folder; files of an earlier export of the same run are replaced [default: export/ in the run folder]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-    /// Also write random observations with this program's answers, to hold another runtime against: samples.safetensors
-    #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = whole(1..=MOST_SAMPLES))]
-    pub(crate) samples: Option<u64>,
-    #[command(flatten)]
-    pub(crate) kinds: KindArgs,
-}
-
-/// What is exported.
-#[derive(Debug, clap::Args)]
-#[allow(clippy::struct_excessive_bools)] // a flag for each kind
-#[command(next_help_heading = "Kinds [default: all that the run has]")]
-pub(crate) struct KindArgs {
-    /// controller.onnx, and policy.onnx: the controller with the law of the hardware as built
-    #[arg(long)]
-    onnx: bool,
-    /// controller.safetensors: weights and scaling
-    #[arg(long)]
-    safetensors: bool,
-    /// controller.json: the same as text
-    #[arg(long)]
-    json: bool,
-    /// hand.xml: the hand with tendons and springs, and its task, for MuJoCo
-    #[arg(long)]
-    mjcf: bool,
-    /// hand.urdf: the hand's links and joints, with the STL files as what is seen
-    #[arg(long)]
-    urdf: bool,
-    /// palm.stl and each link and pulley, to print, in mm
-    #[arg(long)]
-    stl: bool,
-    /// hand.scad: the same for OpenSCAD, with the parameters at its top
-    #[arg(long)]
-    scad: bool,
-}
-
-impl KindArgs {
-    /// What is asked for.
-    pub(crate) fn asked(&self) -> Vec<Kind> {
-        let asked = |kind: &Kind| match kind {
-            Kind::Onnx => self.onnx,
-            Kind::Safetensors => self.safetensors,
-            Kind::Json => self.json,
-            Kind::Mjcf => self.mjcf,
-            Kind::Urdf => self.urdf,
-            Kind::Stl => self.stl,
-            Kind::Scad => self.scad,
-        };
-        Kind::ALL.into_iter().filter(asked).collect()
-    }
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct PartsArgs {
-    /// A run folder of a grasping problem, as `hwasp train` writes one
-    #[arg(value_parser = path())]
-    pub(crate) run: PathBuf,
-    /// Springs to choose from, a CSV file with the columns of docs/parts.md [default: one that comes with the program, of
-    /// standard sizes and nobody's stock]
-    #[arg(long, value_name = "FILE", value_parser = path())]
-    pub(crate) catalogue: Option<PathBuf>,
-    /// Set what the workshop has, such as `axle="3 mm"` or `hole_pitch="10 deg"`; may be repeated
-    #[arg(long = "bench", value_name = "KEY=VALUE")]
-    pub(crate) bench: Vec<String>,
-    /// Train the controller further on the parts, for so many simulator steps, such as 3e5 [default: not at all]
-    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
-    pub(crate) fine_tune: Option<u64>,
-    #[command(flatten)]
-    pub(crate) held_out: HeldOutArgs,
-    /// The folder of the list; its files are replaced [default: build/ in the run folder]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct TolerancesArgs {
-    /// A run folder, as `hwasp train` writes one
-    #[arg(value_parser = path())]
-    pub(crate) run: PathBuf,
-    /// How far a parameter may be off, such as `radius="0.1 mm"`, `thumb_distal_stiffness="10 %"`; may be repeated [default: of a
-    /// hand radius 0.1 mm, stiffness 5 %, preload 0.13 rad; otherwise 5 %]
-    #[arg(long = "error", value_name = "NAME=SIZE")]
-    pub(crate) error: Vec<String>,
-    #[command(flatten)]
-    pub(crate) held_out: HeldOutArgs,
-    /// The folder of figures and pictures; files there are replaced [default: build/ in the run folder]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-}
-
-/// Held-out episodes.
-#[derive(Debug, clap::Args)]
-pub(crate) struct HeldOutArgs {
-    /// Episodes [default: what the experiment says]
-    #[arg(long, allow_negative_numbers = true, value_parser = whole(1..=MOST_EPISODES))]
-    episodes: Option<u64>,
-    /// Root seed of their starts [default: what the experiment says]
-    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
-    seed: Option<u64>,
-    /// Threads for episodes; they do not change the result
-    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = threads)]
-    pub(crate) threads: NonZeroUsize,
-}
-
-impl HeldOutArgs {
-    /// How many episodes, and the root seed of their starts.
-    pub(crate) fn asked(&self, train: &TrainSettings) -> (u64, u64) {
-        (self.episodes.unwrap_or(train.evaluation_episodes as u64), self.seed.unwrap_or(train.evaluation_seed))
-    }
-}
-
-#[derive(Debug, clap::Args)]
 pub(crate) struct ReplayArgs {
     /// A file in `faults` or `checkpoints` of a run folder
     #[arg(value_parser = path())]
@@ -457,51 +320,6 @@ pub(crate) struct ReportArgs {
     pub(crate) folder: PathBuf,
     /// The report, .html [default: report.html in the folder]
     #[arg(long, value_name = "FILE", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct CompareArgs {
-    /// A name from `hwasp list`, or the path of a TOML file
-    pub(crate) experiment: String,
-    /// Methods, separated by commas; fixed:middle, fixed:random and fixed:"2 N/m" say where hardware stays that is fixed
-    #[arg(long, value_delimiter = ',', default_value = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed")]
-    pub(crate) methods: Vec<String>,
-    /// Seeds of each method, from 0
-    #[arg(long, default_value = "5", allow_negative_numbers = true, value_parser = whole(1..=MOST_SEEDS))]
-    pub(crate) seeds: u64,
-    /// Real simulator steps of each training [default: what the experiment says]
-    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
-    pub(crate) env_steps: Option<u64>,
-    /// Set one value of the experiment, such as `ppo.clip_ratio=0.1`; may be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
-    /// The training return whose steps are counted [default: nine tenths of the way from the worst to the best]
-    #[arg(long, allow_negative_numbers = true, value_parser = finite)]
-    pub(crate) threshold: Option<f64>,
-    /// Cells trained at once; they do not change the result [default: the processors there are]
-    #[arg(long, allow_negative_numbers = true, value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
-    /// The folder; where it holds a part of this comparison, that is continued [default: runs/compare-EXPERIMENT]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
-    pub(crate) out: Option<PathBuf>,
-    /// Print nothing but errors
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct ReproduceArgs {
-    /// fig3-10, fig3-50, figs-bar-10, figs-bar-50 or table1
-    pub(crate) figure: String,
-    /// Two seeds at a fifth of the steps: a minute or two, and the same shape
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// Cells trained at once; they do not change the result [default: the processors there are]
-    #[arg(long, allow_negative_numbers = true, value_parser = threads)]
-    pub(crate) threads: Option<NonZeroUsize>,
-    /// The folder; a part that is there is continued [default: runs/reproduce-FIGURE]
-    #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
 }
 

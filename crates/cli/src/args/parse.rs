@@ -8,6 +8,14 @@ use std::time::Duration;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use hwasp_report::play;
 
+/// The greatest seed: what TOML can write.
+pub(super) const LAST_SEED: u64 = i64::MAX as u64;
+/// The longest training, steps; `train.env_steps` of an experiment has the same limit.
+pub(super) const MOST_STEPS: u64 = 1_000_000_000_000;
+/// The most episodes of an evaluation; `train.evaluation_episodes` has the same limit.
+pub(super) const MOST_EPISODES: u64 = 1_000_000;
+/// The most seeds of a comparison: a picture shows a thousand runs.
+pub(super) const MOST_SEEDS: u64 = 100;
 /// The longest time between two checkpoints, s: a day.
 const MOST_SECONDS: f64 = 86_400.0;
 /// The most threads: far more than help.

@@ -10,7 +10,7 @@ use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
 
 use super::mesh::Mesh;
-use super::outline::{Outline, contains};
+use super::outline::{Outline, contains, turned};
 
 /// Edges that are shorter become points, m.
 const SHORTEST: f64 = 2e-6;
@@ -23,6 +23,14 @@ pub(in crate::hand) struct Layer {
     pub(in crate::hand) heights: [f64; 2],
     pub(in crate::hand) add: Vec<Outline>,
     pub(in crate::hand) cut: Vec<Outline>,
+}
+
+impl Layer {
+    /// The same with its round outlines turned about their middles by an angle, rad.
+    pub(in crate::hand) fn turned(&self, angle: f64) -> Self {
+        let all = |outlines: &[Outline]| outlines.iter().map(|outline| turned(outline, angle)).collect();
+        Self { heights: self.heights, add: all(&self.add), cut: all(&self.cut) }
+    }
 }
 
 /// The solid of layers that lie on each other, from low to high.

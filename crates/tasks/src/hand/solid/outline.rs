@@ -55,6 +55,20 @@ fn arc([y, z]: [f64; 2], radius: f64, start: f64, count: usize, segments: usize)
     })
 }
 
+/// A round outline turned about its middle by an angle, rad; one of few corners stays as it is.
+pub(super) fn turned(outline: &Outline, angle: f64) -> Outline {
+    if angle == 0.0 || outline.len() < HOLE_SEGMENTS {
+        return outline.clone();
+    }
+    let middle = [0, 1].map(|k| outline.iter().map(|corner| corner[k]).sum::<f64>() / outline.len() as f64);
+    let (sin, cos) = angle.sin_cos();
+    let turn = |&[y, z]: &[f64; 2]| {
+        let [y, z] = [y - middle[0], z - middle[1]];
+        [middle[0] + cos * y - sin * z, middle[1] + sin * y + cos * z]
+    };
+    outline.iter().map(turn).collect()
+}
+
 /// Positive for a counterclockwise order.
 pub(super) fn area(outline: &[[f64; 2]]) -> f64 {
     edges(outline).map(|([ay, az], [by, bz])| 0.5 * (ay * bz - az * by)).sum()

@@ -41,7 +41,8 @@ fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure
     }
     let under = report::under(&args.set);
     if !under.is_empty() {
-        title.push_str(&format!(" · {}", under.trim().trim_end_matches(':')));
+        title.push_str(" · ");
+        title.push_str(under.trim().trim_end_matches(':'));
         output::print(&under)?;
     }
     let out = args.out.clone().unwrap_or_else(|| args.run.join("play"));

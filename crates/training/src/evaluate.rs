@@ -29,9 +29,7 @@ pub fn evaluate_by(
     params: &[f32],
     asked: (u64, u64),
 ) -> Result<Evaluation, EvaluateError> {
-    let experiment = ExperimentText::of(assembly.experiment())?;
-    let stage = Stage::Deployment(assembly.built(params));
-    Ok(Evaluation::new(&rollouts(collector, assembly, experiment, stage, params, asked)?, asked)?)
+    evaluate_at(Stage::Deployment(assembly.built(params)), collector, assembly, params, asked)
 }
 
 /// Evaluates the controller in `params` on the design in them in the world that stands in for the built robot: the hand with
@@ -52,8 +50,17 @@ pub fn evaluate_native_by(
     params: &[f32],
     asked: (u64, u64),
 ) -> Result<Evaluation, EvaluateError> {
+    evaluate_at(Stage::StandIn(assembly.policy.design(params)), collector, assembly, params, asked)
+}
+
+fn evaluate_at(
+    stage: Stage,
+    collector: &dyn Collector,
+    assembly: &Assembly,
+    params: &[f32],
+    asked: (u64, u64),
+) -> Result<Evaluation, EvaluateError> {
     let experiment = ExperimentText::of(assembly.experiment())?;
-    let stage = Stage::StandIn(assembly.policy.design(params));
     Ok(Evaluation::new(&rollouts(collector, assembly, experiment, stage, params, asked)?, asked)?)
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use hwasp_core::RolloutError;
+use hwasp_problem::AnyError;
 use hwasp_runs::RunError;
 use hwasp_tasks::hand::HandError;
 use hwasp_training::AssembleError;
@@ -26,7 +27,7 @@ pub enum ExportError {
     Rollout(#[from] RolloutError),
     /// A form of the mechanism of a run without one.
     #[error(
-        "{problem} has no mechanism to write as {kind}: mjcf, urdf, stl and scad are for the hand, in z-grasp and 3d-grasp"
+        "{problem} has no mechanism to write as {kind}; those of z-grasp and 3d-grasp are written as mjcf, urdf, stl and scad"
     )]
     NoMechanism {
         /// The form.
@@ -34,7 +35,10 @@ pub enum ExportError {
         /// The problem.
         problem: String,
     },
-    /// A hand that cannot be built.
+    /// A mechanism that cannot have the design.
+    #[error(transparent)]
+    Mechanism(AnyError),
+    /// A hand that cannot be printed.
     #[error(transparent)]
     Hand(#[from] HandError),
     /// A hand whose parts are not known.

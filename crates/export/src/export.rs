@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use hwasp_problem::ModelFormat;
+
 use crate::error::ExportError;
 use crate::file::ExportFile;
 use crate::kind::Kind;
 use crate::source::Source;
-use crate::{controller, folder, onnx, samples};
+use crate::{controller, folder, onnx, printed, samples};
 
 /// The most random observations that are written: files of some hundred MB.
 pub const MOST_SAMPLES: u64 = 1_000_000;
@@ -43,9 +45,9 @@ fn files_of(kind: Kind, source: &Source) -> Result<Vec<ExportFile>, ExportError>
             source.with_contract(|deployed, contract| Ok(vec![controller::safetensors(deployed, contract)?]))
         }
         Kind::Json => source.with_contract(|deployed, contract| Ok(vec![controller::json(deployed, contract)?])),
-        Kind::Mjcf => Ok(source.mechanism(kind)?.mjcf()?),
-        Kind::Urdf => Ok(source.mechanism(kind)?.urdf()?),
-        Kind::Stl => Ok(source.mechanism(kind)?.stl(source.chosen(kind)?)?),
-        Kind::Scad => Ok(source.mechanism(kind)?.scad(source.chosen(kind)?)?),
+        Kind::Mjcf => source.model(kind, ModelFormat::Mjcf),
+        Kind::Urdf => source.model(kind, ModelFormat::Urdf),
+        Kind::Stl => Ok(printed::stl(source.hand(kind)?, source.chosen(kind)?)?),
+        Kind::Scad => Ok(printed::scad_file(source.hand(kind)?, source.chosen(kind)?)?),
     }
 }

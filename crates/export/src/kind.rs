@@ -1,7 +1,7 @@
 //! What can be exported.
 
 use hwasp_experiment::Experiment;
-
+use hwasp_problem::ModelFormat;
 use hwasp_workshop::design::hand_of;
 
 /// What can be exported.
@@ -13,9 +13,9 @@ pub enum Kind {
     Safetensors,
     /// The controller's numbers as JSON.
     Json,
-    /// The hand and its task as a `MuJoCo` model, with native tendons and springs.
+    /// The mechanism in its world as a `MuJoCo` model.
     Mjcf,
-    /// The hand's links and joints as URDF.
+    /// Its links and joints as URDF.
     Urdf,
     /// Its printed parts as STL.
     Stl,
@@ -41,9 +41,15 @@ impl Kind {
         }
     }
 
-    /// Whether a run of this experiment has it: only hands have a mechanism to be written.
+    /// Whether a run of this experiment has it: models are of a mechanism that can be written so, printed parts are of the hand.
     pub fn is_of(self, spec: &Experiment) -> bool {
-        let of_mechanism = matches!(self, Self::Mjcf | Self::Urdf | Self::Stl | Self::Scad);
-        !of_mechanism || hand_of(spec).is_some()
+        let mechanism = spec.task.built().mechanism.as_ref();
+        let has = |format| mechanism.is_some_and(|mechanism| mechanism.formats().contains(&format));
+        match self {
+            Self::Onnx | Self::Safetensors | Self::Json => true,
+            Self::Mjcf => has(ModelFormat::Mjcf),
+            Self::Urdf => has(ModelFormat::Urdf),
+            Self::Stl | Self::Scad => hand_of(spec).is_some(),
+        }
     }
 }

@@ -13,9 +13,9 @@ mod export;
 mod file;
 mod folder;
 mod kind;
-mod mechanism;
 mod model;
 mod onnx;
+mod printed;
 mod samples;
 mod source;
 

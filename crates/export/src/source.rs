@@ -4,7 +4,9 @@ use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use hwasp_experiment::{Catalogue, Experiment};
+use hwasp_problem::{ModelFile, ModelFormat};
 use hwasp_runs::{DESIGN, RunError, SavedRun, saved_experiment};
+use hwasp_tasks::hand::HandDescription;
 use hwasp_workshop::design::{DesignReport, hand_of};
 use hwasp_workshop::parts::ChosenParts;
 
@@ -13,7 +15,6 @@ use crate::deployed::Deployed;
 use crate::error::ExportError;
 use crate::file::ExportFile;
 use crate::kind::Kind;
-use crate::mechanism::Mechanism;
 
 /// A run to export from. What a kind does not need is not read: the experiment is there at once, the trained policy when it
 /// is asked for.
@@ -69,24 +70,36 @@ impl Source {
         if let Some(chosen) = self.chosen.get() {
             return Ok(chosen);
         }
-        let Mechanism { hand, design } = self.mechanism(kind)?;
-        let chosen = ChosenParts::of_run(&self.path, &self.spec, &hand, &design)?;
+        let design = self.design()?;
+        let design = std::array::from_fn(|i| design[i]);
+        let chosen = ChosenParts::of_run(&self.path, &self.spec, self.hand(kind)?, &design)?;
         Ok(self.chosen.get_or_init(|| chosen))
     }
 
-    /// The mechanism, to be written as `kind`.
-    pub(crate) fn mechanism(&self, kind: Kind) -> Result<Mechanism, ExportError> {
-        let none = || ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name().to_owned() };
-        let hand = hand_of(&self.spec).cloned().ok_or_else(none)?;
+    /// The hand, whose parts are to be written as `kind`.
+    pub(crate) fn hand(&self, kind: Kind) -> Result<&HandDescription, ExportError> {
+        hand_of(&self.spec).ok_or_else(|| self.none(kind))
+    }
+
+    /// The mechanism with the design as it was trained, as `kind`.
+    pub(crate) fn model(&self, kind: Kind, format: ModelFormat) -> Result<Vec<ExportFile>, ExportError> {
+        let mechanism = self.spec.task.built().mechanism.as_ref().filter(|_| kind.is_of(&self.spec));
+        let mechanism = mechanism.ok_or_else(|| self.none(kind))?;
+        let files = mechanism.write(format, &self.design()?).map_err(ExportError::Mechanism)?;
+        Ok(files.into_iter().map(|ModelFile { name, contents }| ExportFile { name, contents }).collect())
+    }
+
+    fn none(&self, kind: Kind) -> ExportError {
+        ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name().to_owned() }
+    }
+
+    /// The design as built, SI.
+    fn design(&self) -> Result<Vec<f64>, ExportError> {
         if !self.path.join(DESIGN).is_file() {
             // Of a training that did not come to its end.
-            return Ok(Mechanism::new(hand, &self.deployed()?.design));
+            return Ok(self.deployed()?.design.clone());
         }
-        let design: Vec<f64> = DesignReport::open(&self.path, self.spec.catalogue())?
-            .groups
-            .into_iter()
-            .flat_map(|group| group.group.as_built)
-            .collect();
-        Ok(Mechanism::new(hand, &design))
+        let report = DesignReport::open(&self.path, self.spec.catalogue())?;
+        Ok(report.groups.into_iter().flat_map(|group| group.group.as_built).collect())
     }
 }

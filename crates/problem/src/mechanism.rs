@@ -3,10 +3,44 @@
 use std::any::Any;
 use std::fmt::Debug;
 
-/// A mechanism as it is built: parts, shapes and statics for the numbers of a design.
+use crate::error::AnyError;
+
+/// A format in which other programs read a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelFormat {
+    /// A model of `MuJoCo`.
+    Mjcf,
+    /// Links and joints, for ROS and its relatives.
+    Urdf,
+}
+
+/// One of the files that a mechanism is written as.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelFile {
+    /// Its place in the folder that it is written to.
+    pub name: String,
+    /// What is in it.
+    pub contents: Vec<u8>,
+}
+
+/// A mechanism as it is built: models, parts, shapes and statics for the numbers of a design.
 pub trait Mechanism: Any + Debug + Send + Sync {
-    /// For those who know what it is: a hand has pages of its own.
+    /// For those who know what it is: a hand has pages and printed parts of its own.
     fn as_any(&self) -> &dyn Any;
+
+    /// The formats that it can be written in.
+    fn formats(&self) -> Vec<ModelFormat> {
+        Vec::new()
+    }
+
+    /// The mechanism with a design (SI, as built) in one of its [`formats`](Self::formats).
+    ///
+    /// # Errors
+    /// Where the mechanism cannot have this design, or has no such format.
+    fn write(&self, format: ModelFormat, design: &[f64]) -> Result<Vec<ModelFile>, AnyError> {
+        let _ = design;
+        Err(format!("this mechanism is not written as {format:?}").into())
+    }
 
     /// The manufacturing errors to reckon with where nobody says others: what is off, by its name or the last word of it, and by
     /// how much, `("radius", "0.1 mm")`.

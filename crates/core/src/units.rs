@@ -29,6 +29,20 @@ pub enum Dimension {
     TorsionalStiffness,
     /// Linear damping, N·s/m.
     Damping,
+    /// Torsional damping, N·m·s/rad.
+    TorsionalDamping,
+    /// Acceleration, m/s².
+    Acceleration,
+    /// Moment of inertia, kg·m².
+    Inertia,
+    /// Density, kg/m³.
+    Density,
+    /// Power, W.
+    Power,
+    /// Electric current, A.
+    Current,
+    /// Voltage, V.
+    Voltage,
 }
 
 /// A named unit: its symbol, its dimension and the factor to SI.
@@ -66,6 +80,13 @@ const UNITS: &[Unit] = &[
     Unit { symbol: "N·m/rad", dimension: Dimension::TorsionalStiffness, to_si: 1.0 },
     Unit { symbol: "N·mm/rad", dimension: Dimension::TorsionalStiffness, to_si: 1e-3 },
     Unit { symbol: "N·s/m", dimension: Dimension::Damping, to_si: 1.0 },
+    Unit { symbol: "N·m·s/rad", dimension: Dimension::TorsionalDamping, to_si: 1.0 },
+    Unit { symbol: "m/s^2", dimension: Dimension::Acceleration, to_si: 1.0 },
+    Unit { symbol: "kg·m^2", dimension: Dimension::Inertia, to_si: 1.0 },
+    Unit { symbol: "kg/m^3", dimension: Dimension::Density, to_si: 1.0 },
+    Unit { symbol: "W", dimension: Dimension::Power, to_si: 1.0 },
+    Unit { symbol: "A", dimension: Dimension::Current, to_si: 1.0 },
+    Unit { symbol: "V", dimension: Dimension::Voltage, to_si: 1.0 },
 ];
 
 /// Why a text is not a quantity of the dimension asked for.
@@ -103,7 +124,7 @@ pub enum UnitError {
 
 impl Dimension {
     /// Every one.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 19] = [
         Self::None,
         Self::Length,
         Self::Speed,
@@ -116,6 +137,13 @@ impl Dimension {
         Self::Stiffness,
         Self::TorsionalStiffness,
         Self::Damping,
+        Self::TorsionalDamping,
+        Self::Acceleration,
+        Self::Inertia,
+        Self::Density,
+        Self::Power,
+        Self::Current,
+        Self::Voltage,
     ];
 
     /// The SI symbol, empty for pure numbers.

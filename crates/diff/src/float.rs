@@ -45,6 +45,8 @@ pub trait Float:
     fn sin(self) -> Self;
     /// The cosine.
     fn cos(self) -> Self;
+    /// The angle whose tangent it is, within ±π/2.
+    fn atan(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// The hyperbolic tangent in the form that vectorises: [`tanh`](crate::fast::tanh) for `f32`, the exact one for `f64`.
@@ -89,6 +91,10 @@ macro_rules! float {
             #[inline(always)]
             fn cos(self) -> Self {
                 <$t>::cos(self)
+            }
+            #[inline(always)]
+            fn atan(self) -> Self {
+                <$t>::atan(self)
             }
             #[inline(always)]
             fn abs(self) -> Self {

@@ -26,6 +26,8 @@ pub enum Unary {
     Abs,
     /// The logistic function 1 / (1 + e^-a).
     Sigmoid,
+    /// The angle in radians whose tangent is a, within ±π/2.
+    Atan,
 }
 
 /// A function of two numbers.
@@ -43,6 +45,10 @@ pub enum Binary {
     Min,
     /// The larger of two.
     Max,
+    /// 1 where a < b, else 0. It is flat: both derivatives are zero.
+    Less,
+    /// b where a is not 0, else 0, whatever b is there. Its derivative by the condition a is zero.
+    Gate,
 }
 
 impl Unary {
@@ -64,6 +70,7 @@ impl Unary {
                 let d = F::ONE + e;
                 if a >= F::ZERO { F::ONE / d } else { e / d }
             }
+            Self::Atan => a.atan(),
         }
     }
 
@@ -84,6 +91,7 @@ impl Unary {
                 if a == F::ZERO { F::ZERO } else { signed }
             }
             Self::Sigmoid => g * (v * (F::ONE - v)),
+            Self::Atan => g / (F::ONE + a * a),
         }
     }
 }
@@ -100,6 +108,8 @@ impl Binary {
             Self::Min if b < a => b,
             Self::Max if b > a => b,
             Self::Min | Self::Max => a,
+            Self::Less => select(a < b, F::ONE, F::ZERO),
+            Self::Gate => select(a == F::ZERO, F::ZERO, b),
         }
     }
 
@@ -112,6 +122,7 @@ impl Binary {
             Self::Div => g / b,
             Self::Min => select(b < a, F::ZERO, g),
             Self::Max => select(b > a, F::ZERO, g),
+            Self::Less | Self::Gate => F::ZERO,
         }
     }
 
@@ -125,6 +136,8 @@ impl Binary {
             Self::Div => -(g * v / b),
             Self::Min => select(b < a, g, F::ZERO),
             Self::Max => select(b > a, g, F::ZERO),
+            Self::Less => F::ZERO,
+            Self::Gate => select(a == F::ZERO, F::ZERO, g),
         }
     }
 }
@@ -137,7 +150,7 @@ fn select<F: Float>(choice: bool, yes: F, no: F) -> F {
 /// Runs `$body` with `$OP` a constant, so that the match on the operation happens outside of the loop over rows.
 macro_rules! with_unary {
     ($op:expr, $OP:ident => $body:expr) => {
-        with_unary!(@ $op, $OP => $body; Neg Exp Ln Sqrt Sin Cos Tanh Abs Sigmoid)
+        with_unary!(@ $op, $OP => $body; Neg Exp Ln Sqrt Sin Cos Tanh Abs Sigmoid Atan)
     };
     (@ $op:expr, $OP:ident => $body:expr; $($name:ident)*) => {
         match $op {
@@ -149,7 +162,7 @@ macro_rules! with_unary {
 /// As [`with_unary`], for two operands.
 macro_rules! with_binary {
     ($op:expr, $OP:ident => $body:expr) => {
-        with_binary!(@ $op, $OP => $body; Add Sub Mul Div Min Max)
+        with_binary!(@ $op, $OP => $body; Add Sub Mul Div Min Max Less Gate)
     };
     (@ $op:expr, $OP:ident => $body:expr; $($name:ident)*) => {
         match $op {

@@ -10,7 +10,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// drawn. Constants mix in from the right as plain `f64`: `(y2 - y1) * 0.5`.
 ///
 /// A law must not branch on values: what is traced is one straight line. Use [`min`](Scalar::min),
-/// [`max`](Scalar::max), [`abs`](Scalar::abs) and [`clamp`](Scalar::clamp) instead.
+/// [`max`](Scalar::max), [`abs`](Scalar::abs) and [`clamp`](Scalar::clamp) instead, and where there has to be a choice
+/// [`less`](Scalar::less) with [`gate`](Scalar::gate).
 pub trait Scalar:
     Copy
     + Add<Output = Self>
@@ -46,6 +47,13 @@ pub trait Scalar:
     fn max(self, other: Self) -> Self;
     /// The logistic function 1 / (1 + e^-x).
     fn sigmoid(self) -> Self;
+    /// The angle in radians whose tangent is `self`, within ±π/2.
+    fn atan(self) -> Self;
+    /// 1 where `self` is less than `other`, else 0; flat, so that no derivative passes.
+    fn less(self, other: Self) -> Self;
+    /// `value` where `self` is not 0, else 0, whatever `value` is there: `c.gate(a) + (not c).gate(b)` is a choice in which the
+    /// side that is not chosen may even be NaN. The derivative passes to the chosen side alone.
+    fn gate(self, value: Self) -> Self;
     /// `self` limited to `[lo, hi]`; no derivative outside.
     #[must_use]
     fn clamp(self, lo: f64, hi: f64) -> Self {
@@ -103,5 +111,17 @@ impl Scalar for f64 {
     #[inline]
     fn sigmoid(self) -> Self {
         logistic(self)
+    }
+    #[inline]
+    fn atan(self) -> Self {
+        f64::atan(self)
+    }
+    #[inline]
+    fn less(self, other: Self) -> Self {
+        if self < other { 1.0 } else { 0.0 }
+    }
+    #[inline]
+    fn gate(self, value: Self) -> Self {
+        if self == 0.0 { 0.0 } else { value }
     }
 }

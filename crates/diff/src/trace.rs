@@ -201,4 +201,13 @@ impl Scalar for Var<'_> {
     fn sigmoid(self) -> Self {
         self.unary(Unary::Sigmoid)
     }
+    fn atan(self) -> Self {
+        self.unary(Unary::Atan)
+    }
+    fn less(self, other: Self) -> Self {
+        self.binary(Binary::Less, other)
+    }
+    fn gate(self, value: Self) -> Self {
+        self.binary(Binary::Gate, value)
+    }
 }

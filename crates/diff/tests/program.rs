@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_diff::{GradCheckError, GradCheckSettings, Program, Scalar, gradcheck};
+use hwasp_diff::{GradCheckError, GradCheckSettings, Program, Scalar, Var, gradcheck};
 use proptest::prelude::*;
 
 /// Every primitive, kept inside its domain.
-const OPERATIONS: usize = 22;
+const OPERATIONS: usize = 25;
 
 /// The `code`-th operation on two numbers; `kink` is told how far the operands are from where the derivative jumps.
 fn operation<T: Scalar>(code: usize, a: T, b: T, kink: &mut impl FnMut(T)) -> T {
@@ -45,6 +45,15 @@ fn operation<T: Scalar>(code: usize, a: T, b: T, kink: &mut impl FnMut(T)) -> T 
         18 => (a - 0.25) / 3.0,
         19 => T::constant(2.0) / (a * a + 1.5),
         20 => T::constant(1.0) * -(-b),
+        21 => (a - b).atan(),
+        22 => {
+            kink(a - b);
+            a.less(b) * a + b.less(a)
+        }
+        23 => {
+            kink(a - b);
+            a.less(b).gate(a * b) + (T::constant(1.0) - a.less(b)).gate(b)
+        }
         _ => T::constant(-0.0) + (a * 0.7 + T::constant(0.5).sin()),
     }
 }
@@ -285,6 +294,21 @@ fn conventions_at_kinks() {
         program.vjp(&at, 1, 1, &w, 1, &mut tape, &mut gradient, 1);
         assert_eq!(gradient, expected, "output {o}");
     }
+}
+
+/// What a choice leaves out may be no number, in value and derivative: `x.less(0).gate(ln(-x))` was the reason for a gate of its own.
+#[test]
+fn the_side_that_is_not_chosen_may_be_no_number() {
+    let program = Program::trace(&[] as &[&str], &["x"], |_, c| {
+        let negative = c[0].less(Var::constant(0.0));
+        vec![("y".into(), negative.gate((-c[0]).ln()) + (Var::constant(1.0) - negative).gate(c[0] * 3.0))]
+    });
+    let mut tape = program.tape::<f64>(2);
+    let (at, mut y, mut slope) = ([2.0, -1.0], [0.0; 2], [9.0; 2]);
+    program.bind(&[], &mut tape);
+    program.forward(&at, 2, 2, &mut tape, &mut y, 2);
+    program.vjp(&at, 2, 2, &[1.0; 2], 2, &mut tape, &mut slope, 2);
+    assert_eq!((y, slope), ([6.0, 0.0], [3.0, -1.0]));
 }
 
 /// Only what some output needs is kept, and what rows do not change is done once.

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::GraphStyle;
 use super::graph::{Edge, Graph, Kind};
 use super::simplify::reads_many;
+use crate::ops::Binary;
 
 pub(super) fn write(graph: &Graph, style: &GraphStyle) -> String {
     let mut text = String::from(
@@ -54,8 +55,13 @@ pub(super) fn mark(edge: &Edge, graph: &Graph, to: usize, position: usize) -> St
     if edge.minus {
         mark.push('−');
     }
-    if node.kind == Kind::Binary(crate::ops::Binary::Div) && position == 1 {
-        mark.push_str("divisor");
+    if let (Kind::Binary(op), 1) = (node.kind, position) {
+        mark.push_str(match op {
+            Binary::Div => "divisor",
+            Binary::Less => "the larger",
+            Binary::Gate => "then",
+            Binary::Add | Binary::Sub | Binary::Mul | Binary::Min | Binary::Max => "",
+        });
     }
     if let [first, .., last] = edge.only[..] {
         let _ = write!(mark, "[{first} … {last}]");

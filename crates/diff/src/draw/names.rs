@@ -57,6 +57,7 @@ pub(super) fn unary(op: Unary) -> &'static str {
         Unary::Tanh => "tanh",
         Unary::Abs => "|·|",
         Unary::Sigmoid => "σ",
+        Unary::Atan => "atan",
     }
 }
 
@@ -67,5 +68,7 @@ pub(super) fn binary(op: Binary) -> &'static str {
         Binary::Div => "÷",
         Binary::Min => "min",
         Binary::Max => "max",
+        Binary::Less => "<",
+        Binary::Gate => "if",
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn simplify(graph: Graph) -> Graph {
             continue;
         };
         let op = if op == Binary::Sub { Binary::Add } else { op };
-        if op == Binary::Div {
+        if matches!(op, Binary::Div | Binary::Less | Binary::Gate) {
             continue;
         }
         let terms = merged(terms(&nodes, &uses, i, op), &nodes);

@@ -32,6 +32,20 @@ impl Writer<'_> {
         self.graph.node(op, &names, &name);
         Value { name, by_row: inputs.iter().any(|input| input.by_row) }
     }
+
+    /// What is true or false in ONNX is 1 or 0 in a program.
+    fn cast_of(&mut self, op: &str, inputs: &[&Value]) -> Value {
+        let truth = self.step(op, inputs);
+        let name = self.graph.cast(&truth.name, &format!("{}.number", truth.name), ElementType::Float64);
+        Value { name, ..truth }
+    }
+
+    /// `value` where `condition` is not 0, else 0.
+    fn gate(&mut self, condition: &Value, value: &Value) -> Value {
+        let zero = self.constant(0.0);
+        let closed = self.step("Equal", &[condition, &zero]);
+        self.step("Where", &[&closed, &zero, value])
+    }
 }
 
 impl Interpreter for Writer<'_> {
@@ -55,6 +69,7 @@ impl Interpreter for Writer<'_> {
             Unary::Tanh => "Tanh",
             Unary::Abs => "Abs",
             Unary::Sigmoid => "Sigmoid",
+            Unary::Atan => "Atan",
         };
         self.step(op, &[a])
     }
@@ -67,6 +82,8 @@ impl Interpreter for Writer<'_> {
             Binary::Div => "Div",
             Binary::Min => "Min",
             Binary::Max => "Max",
+            Binary::Less => return self.cast_of("Less", &[a, b]),
+            Binary::Gate => return self.gate(a, b),
         };
         self.step(op, &[a, b])
     }

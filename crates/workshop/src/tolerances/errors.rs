@@ -143,14 +143,20 @@ impl Assignment<'_> {
 /// Whether nothing can be built with this value. Limits of the search are no matter here: an error of the workshop may leave them.
 fn is_impossible(value: f64, dimension: Dimension) -> bool {
     match dimension {
-        Dimension::Length | Dimension::Mass | Dimension::Time => value <= 0.0,
-        Dimension::Stiffness | Dimension::TorsionalStiffness | Dimension::Damping => value < 0.0,
+        Dimension::Length | Dimension::Mass | Dimension::Time | Dimension::Inertia | Dimension::Density => value <= 0.0,
+        Dimension::Stiffness | Dimension::TorsionalStiffness | Dimension::Damping | Dimension::TorsionalDamping => {
+            value < 0.0
+        }
         // Signs are directions, or nothing is known.
         Dimension::None
         | Dimension::Speed
         | Dimension::Force
         | Dimension::Torque
         | Dimension::Angle
-        | Dimension::AngularSpeed => false,
+        | Dimension::AngularSpeed
+        | Dimension::Acceleration
+        | Dimension::Power
+        | Dimension::Current
+        | Dimension::Voltage => false,
     }
 }

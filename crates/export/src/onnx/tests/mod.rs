@@ -158,9 +158,10 @@ fn every_operation_of_a_law() {
             (b.abs() + u[0]).sqrt() * a.sin() / (b.cos() + 3.0),
             (a * b).tanh().min(b.sigmoid()).max(a * 0.1),
             u[0].exp() + u[0],
+            a.less(b).gate((a.abs() + 0.5).ln()) + b.less(a).gate(b.atan()) + u[0].less(T::constant(0.5)),
         ]
     }
-    let names = ["p", "q", "r", "s"].map(str::to_owned);
+    let names = ["p", "q", "r", "s", "t"].map(str::to_owned);
     let program = Program::trace(&["u"], &["a", "b"], |u, c| names.iter().cloned().zip(arithmetic(u, c)).collect());
     let deployed = deployed("reach", "hwasp", &[]);
     let mut graph = Graph::new("law", &Contract::new(&deployed).models.policy);
@@ -168,7 +169,7 @@ fn every_operation_of_a_law() {
     graph.numbers("u", &[], &[0.7], ElementType::Float64);
     let value = |name: &str, by_row| Value { name: name.to_owned(), by_row };
     let outputs = law(&mut graph, &program, &[value("u", false)], &[value("a", true), value("b", true)]);
-    assert_eq!(outputs.iter().map(|o| o.by_row).collect::<Vec<_>>(), [true, true, true, false]);
+    assert_eq!(outputs.iter().map(|o| o.by_row).collect::<Vec<_>>(), [true, true, true, false, true]);
     let (a, b) = ([0.3, -2.0, 0.0, 1.5], [-1.2, 0.4, 5.0, -0.1]);
     let column = |data: [f64; 4]| Tensor { kind: DOUBLE, dims: vec![4, 1], data: data.to_vec() };
     let values = runtime::values(&graph.0, &[("a", column(a)), ("b", column(b))]);
@@ -179,5 +180,5 @@ fn every_operation_of_a_law() {
         }
     }
     let ops: BTreeSet<&str> = graph.0.node.iter().map(|node| node.op_type.as_str()).collect();
-    assert_eq!(ops.len(), 15, "{ops:?}");
+    assert_eq!(ops.len(), 20, "{ops:?}");
 }

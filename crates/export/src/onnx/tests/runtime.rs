@@ -97,6 +97,14 @@ fn apply(node: &NodeProto, inputs: &[&Tensor]) -> Vec<Tensor> {
         "Sub" => binary(|a, b| a - b),
         "Mul" => binary(|a, b| a * b),
         "Div" => binary(|a, b| a / b),
+        "Atan" => elementwise(f64::atan),
+        "Less" => binary(|a, b| if a < b { 1.0 } else { 0.0 }),
+        "Equal" => binary(|a, b| if a == b { 1.0 } else { 0.0 }),
+        "Where" => {
+            let (yes, no) = (inputs[1], inputs[2]);
+            let dims = together(&together(&first.dims, &yes.dims), &no.dims);
+            vec![broadcast(&dims, yes.kind, |at| if first.at(at) == 0.0 { no.at(at) } else { yes.at(at) })]
+        }
         "Min" => binary(f64::min),
         "Max" => binary(f64::max),
         "Cast" => vec![Tensor::new(attribute("to") as i32, first.dims.clone(), first.data.clone())],

@@ -1,7 +1,9 @@
 //! An experiment in which nothing is left open, and how layers become one.
 
+use std::sync::Arc;
+
 use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
-use hwasp_settings::{Faults, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
+use hwasp_settings::{Faults, Files, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
 
 use crate::built::MOST_STEPS;
 use crate::catalogue::Catalogue;
@@ -74,6 +76,11 @@ impl Experiment {
     /// What it was resolved with: to read others that lie beside it.
     pub fn catalogue(&self) -> &Catalogue {
         &self.catalogue
+    }
+
+    /// The files that it names, by their paths from its folder.
+    pub fn files(&self) -> &Arc<Files> {
+        &self.task.built().files
     }
 
     /// The discount that returns are told and candidates scored by: the learner's.

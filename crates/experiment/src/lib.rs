@@ -29,7 +29,7 @@ pub use controller::{ActivationKind, ControllerSettings};
 pub use design::DesignSettings;
 pub use experiment::{Experiment, resolve};
 pub use group::{Group, Place};
-pub use hwasp_settings::{Choice, Excerpt, Fault, Faults, LONGEST_FILE, Layers};
+pub use hwasp_settings::{Choice, Excerpt, Fault, Faults, Files, Folder, LONGEST_FILE, Layers};
 pub use initial::{InitialDesign, InitialValue};
 pub use learner::LearnerSettings;
 pub use load::{EXPERIMENT, load};

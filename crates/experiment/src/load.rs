@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use hwasp_settings::text::shorten;
-use hwasp_settings::{Faults, LONGEST_FILE, Layers, listed, nearest};
+use hwasp_settings::{Faults, Folder, LONGEST_FILE, Layers, listed, nearest};
 
 use crate::catalogue::Catalogue;
 
@@ -34,7 +34,11 @@ pub fn load(name_or_path: &str, catalogue: &Catalogue) -> Result<Layers, Faults>
     }
     let bytes = read(path).map_err(|error| unreadable(name_or_path, &error, names()))?;
     match String::from_utf8(bytes) {
-        Ok(text) => Layers::from_text(name_or_path, &text),
+        Ok(text) => {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            Ok(Layers::from_text(name_or_path, &text)?.with_folder(Folder::Disk(folder.to_owned())))
+        }
         Err(error) => {
             let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = valid.split(|&byte| byte == b'\n').count();

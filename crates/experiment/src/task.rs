@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use hwasp_core::Dimension;
-use hwasp_problem::{AnyProblem, Built};
+use hwasp_problem::{AnyProblem, Built, FaultsTold};
 use hwasp_settings::{AnySettings, Item, Keys, Section, described, either, listed, read, written};
 
 use crate::built::{COMMON_KEYS, MOST_STEPS, build};
@@ -88,6 +88,10 @@ impl Task {
             Ok(built) => {
                 let horizon = section.count("horizon", built.training.env.horizon, 1..=MOST_STEPS);
                 Some(Self { horizon, problem: Arc::clone(problem), settings, built: Arc::new(built) })
+            }
+            Err(error) if error.is::<FaultsTold>() => {
+                section.take("horizon");
+                None
             }
             Err(error) => {
                 section.take("horizon");

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use hwasp_diff::{Binary, Unary};
+use hwasp_settings::nearest;
 
 use crate::check::{Checker, together};
 use crate::error::ExprError;
@@ -277,7 +278,7 @@ pub(crate) fn scalar(part: Part, quantity: Quantity) -> Value {
 
 /// Adds the nearest of the known names, or all of them where there are few.
 pub(crate) fn suggest(error: ExprError, word: &str, known: &[String]) -> ExprError {
-    if let Some(near) = nearest(word, known) {
+    if let Some(near) = nearest(word, known.iter().map(String::as_str)) {
         return error.hint(format!("did you mean `{near}`?"));
     }
     if known.is_empty() {
@@ -287,23 +288,4 @@ pub(crate) fn suggest(error: ExprError, word: &str, known: &[String]) -> ExprErr
     let rest =
         if known.len() > shown.len() { format!(" and {} more", known.len() - shown.len()) } else { String::new() };
     error.hint(format!("known here: {}{rest}", shown.join(", ")))
-}
-
-/// The known name with the fewest edits, where they are few (Levenshtein 1966).
-fn nearest<'k>(word: &str, known: &'k [String]) -> Option<&'k String> {
-    let word: Vec<char> = word.chars().take(80).collect();
-    let distance = |other: &str| {
-        let mut row: Vec<usize> = (0..=word.len()).collect();
-        for (i, b) in other.chars().take(80).enumerate() {
-            let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-            for (j, a) in word.iter().enumerate() {
-                let cost = usize::from(!a.eq_ignore_ascii_case(&b));
-                let next = (diagonal + cost).min(row[j] + 1).min(row[j + 1] + 1);
-                diagonal = std::mem::replace(&mut row[j + 1], next);
-            }
-        }
-        row[word.len()]
-    };
-    let found = known.iter().map(|name| (distance(name), name)).min_by_key(|(distance, _)| *distance)?;
-    (found.0 <= word.len().max(3) / 3).then_some(found.1)
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use hwasp_core::{Law, MakeEnvironment};
+use hwasp_settings::Files;
 
 use crate::error::AnyError;
 use crate::mechanism::Mechanism;
@@ -29,6 +30,8 @@ pub struct Built {
     pub mechanism: Option<Arc<dyn Mechanism>>,
     /// The world that stands in for the built robot.
     pub stand_in: Option<StandIn>,
+    /// The files that its settings name, by their paths: a run keeps them beside its experiment.
+    pub files: Arc<Files>,
 }
 
 impl Built {
@@ -42,7 +45,16 @@ impl Built {
     pub fn of(training: World, deployment: World) -> Self {
         let optimum = vec![None; training.law.design().groups().len()];
         let words = Words::default();
-        Self { training, deployment, optimum, effort_std: None, words, mechanism: None, stand_in: None }
+        Self {
+            training,
+            deployment,
+            optimum,
+            effort_std: None,
+            words,
+            mechanism: None,
+            stand_in: None,
+            files: Arc::default(),
+        }
     }
 }
 

@@ -54,7 +54,7 @@ mod words;
 mod world;
 
 pub use built::{Built, StandIn};
-pub use error::AnyError;
+pub use error::{AnyError, FaultsTold};
 pub use mechanism::{Mechanism, ModelFile, ModelFormat};
 pub use problem::{AnyProblem, Preset, Problem};
 pub use words::{Role, Words};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 use crate::fault::{Fault, Faults};
+use crate::folder::Folder;
 use crate::section::Reader;
 use crate::source::{Finding, Origin, Source};
 use crate::suggest::{listed, nearest};
@@ -33,6 +34,8 @@ pub struct Layers {
     overrides: Vec<Table>,
     /// Overrides that could not be understood, told together with all other faults.
     faults: Vec<Fault>,
+    /// Where the files are that it names.
+    folder: Folder,
 }
 
 impl Layers {
@@ -44,8 +47,14 @@ impl Layers {
         }
         let file = Source::File { name: name.into(), text: Arc::from(text) };
         let parsed = parse(&file, text)?;
-        let mut layers =
-            Self { sources: vec![file], base: parsed, overlays: Vec::new(), overrides: Vec::new(), faults: Vec::new() };
+        let mut layers = Self {
+            sources: vec![file],
+            base: parsed,
+            overlays: Vec::new(),
+            overrides: Vec::new(),
+            faults: Vec::new(),
+            folder: Folder::Nowhere,
+        };
         layers.split_overlays();
         Ok(layers)
     }
@@ -66,6 +75,13 @@ impl Layers {
             }
             self.overlays.push((name, key, node));
         }
+    }
+
+    /// The same, whose files are to be found there.
+    #[must_use]
+    pub fn with_folder(mut self, folder: Folder) -> Self {
+        self.folder = folder;
+        self
     }
 
     /// `--set key=value`. A fault in it is told when the experiment is resolved, together with all others.
@@ -173,12 +189,12 @@ impl Layers {
 
     /// A reader of merged tables of these layers.
     pub fn reader(&self) -> Reader<'_> {
-        Reader::new(&self.sources)
+        Reader::new(&self.sources, &self.folder)
     }
 
     /// The same, which tells the faults of one source alone: those of the others have been told.
     pub fn reader_of(&self, source: usize) -> Reader<'_> {
-        Reader::of(&self.sources, source)
+        Reader::of(&self.sources, &self.folder, source)
     }
 
     /// Tells values in the place of tables, which a later option's key in that table would replace without a word.

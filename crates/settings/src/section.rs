@@ -1,8 +1,10 @@
 //! A small declarative reader: ask a table for its keys, get a value for each, and all faults at the end.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
 use crate::fault::Faults;
+use crate::folder::Folder;
 use crate::source::{Finding, Origin, Source};
 use crate::suggest::{either, listed, nearest};
 use crate::text::shorten;
@@ -11,6 +13,7 @@ use crate::tree::{Entry, Node, Table, Value};
 /// What all sections of one experiment share: where values come from, and the faults found so far.
 pub struct Reader<'r> {
     sources: &'r [Source],
+    folder: &'r Folder,
     /// The one source whose faults are told; all if none is named.
     only: Option<usize>,
     errors: RefCell<Faults>,
@@ -23,9 +26,10 @@ pub struct Reader<'r> {
 }
 
 impl<'r> Reader<'r> {
-    pub(crate) fn new(sources: &'r [Source]) -> Self {
+    pub(crate) fn new(sources: &'r [Source], folder: &'r Folder) -> Self {
         Self {
             sources,
+            folder,
             only: None,
             errors: RefCell::default(),
             unsound: RefCell::default(),
@@ -35,8 +39,8 @@ impl<'r> Reader<'r> {
     }
 
     /// The same for the faults of one source: those of the others have been told.
-    pub(crate) fn of(sources: &'r [Source], source: usize) -> Self {
-        Self { only: Some(source), ..Self::new(sources) }
+    pub(crate) fn of(sources: &'r [Source], folder: &'r Folder, source: usize) -> Self {
+        Self { only: Some(source), ..Self::new(sources, folder) }
     }
 
     /// Whether faults that stand here are told.
@@ -175,6 +179,24 @@ impl<'r> Section<'r> {
     /// Notes a fault at a place in the table.
     pub fn fault_at(&self, origin: &Origin, key: &str, message: String, hint: Option<String>) {
         self.reader.fault(Some(origin), &self.path(key), message, hint);
+    }
+
+    /// Where the files are that the experiment names.
+    pub fn folder(&self) -> &'r Folder {
+        self.reader.folder
+    }
+
+    /// Notes a fault of a part of a text, bytes `part` of it, and that the key's value is wrong.
+    pub fn wrong_within(&self, key: &str, node: &Node, part: &Range<usize>, message: String, hint: Option<String>) {
+        let path = self.path(key);
+        let origin = self.reader.sources[node.origin.source].within(&node.origin, part);
+        self.reader.fault(Some(&origin), &path, message, hint);
+        self.reader.unsound.borrow_mut().push(path);
+    }
+
+    /// Whether any key of this table or below it had a wrong value.
+    pub fn all_sound(&self) -> bool {
+        self.sound_below(&self.path)
     }
 
     /// Whether each of these keys of this table has the value that was asked for.

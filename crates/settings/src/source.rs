@@ -65,6 +65,22 @@ impl Source {
         }
     }
 
+    /// Where bytes `part` of a text stand that was written at `origin`; all of it where escapes have moved them.
+    pub(crate) fn within(&self, origin: &Origin, part: &Range<usize>) -> Origin {
+        let Self::File { text, .. } = self else { return origin.clone() };
+        let written = text.get(origin.span.clone()).unwrap_or_default();
+        let mut quotes = ["\"\"\"\n", "'''\n", "\"\"\"", "'''", "\"", "'"].into_iter();
+        match quotes.find(|quotes| written.starts_with(quotes)) {
+            Some(quotes) if !(quotes.starts_with('"') && written.contains('\\')) => {
+                let start = origin.span.start + quotes.len();
+                // A place at the end of the text is shown at the closing quotes.
+                let from = (start + part.start).min(origin.span.end.saturating_sub(1));
+                Origin { source: origin.source, span: from..(start + part.end).max(from) }
+            }
+            _ => origin.clone(),
+        }
+    }
+
     /// What to call it where something is missing in it.
     pub(crate) fn name(&self) -> String {
         match self {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use hwasp_core::Serial;
-use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
+use hwasp_experiment::{Catalogue, EXPERIMENT, resolve};
 use hwasp_plot::{PlotOptions, curves_svg, plot_options};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{
@@ -54,7 +54,7 @@ impl CellRequest {
     /// # Errors
     /// Where the catalogue does not have what the experiment names, or the experiment cannot be put together.
     pub fn cell(&self, catalogue: &Catalogue) -> Result<Cell, CompareError> {
-        let layers = Layers::from_text(EXPERIMENT, self.experiment.as_str())?;
+        let layers = self.experiment.layers(EXPERIMENT)?;
         let experiment = resolve(layers, None, catalogue)?;
         let assembly = Assembly::new(&experiment)
             .map_err(|source| CompareError::Assemble { label: self.label.clone(), source })?;
@@ -171,7 +171,7 @@ impl Cell {
     /// # Errors
     /// Where the experiment cannot be written.
     pub fn request(&self) -> Result<CellRequest, CompareError> {
-        let experiment = ExperimentText::from(self.toml()?);
+        let experiment = ExperimentText::of(self.assembly.experiment()).map_err(|error| encode(EXPERIMENT, &error))?;
         Ok(CellRequest { label: self.label.clone(), seed: self.seed, path: self.path.clone(), experiment })
     }
 

@@ -4,12 +4,13 @@
 //! and episode, so that the answer has the same bits whoever gives it: a thread
 //! ([`LocalCollector`](crate::LocalCollector)), or a [`Worker`](crate::Worker) in another process.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use hwasp_algos::Archive;
 use hwasp_core::{Batch, EpisodeResult, Episodes, RolloutError, bits};
-use hwasp_experiment::Experiment;
+use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -65,10 +66,24 @@ impl Watch for () {
     fn keep(&self, _: &Archive) {}
 }
 
-/// An experiment as its resolved text, shared: whoever knows the text knows the experiment.
+/// An experiment as its resolved text and the files that it names, shared: whoever knows these knows the experiment.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "String", into = "String")]
-pub struct ExperimentText(Arc<str>);
+#[serde(from = "Written", into = "Written")]
+pub struct ExperimentText(Arc<Parts>);
+
+#[derive(Debug, PartialEq, Eq)]
+struct Parts {
+    text: String,
+    files: Arc<Files>,
+}
+
+/// The same as it is written: files in hexadecimal digits, for a mesh is no text.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    text: String,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    files: BTreeMap<String, String>,
+}
 
 impl ExperimentText {
     /// Of an experiment.
@@ -77,12 +92,21 @@ impl ExperimentText {
     /// [`CollectError::Setup`] where it cannot be written as TOML.
     pub fn of(experiment: &Experiment) -> Result<Self, CollectError> {
         let text = experiment.to_toml();
-        text.map(Self::from).map_err(|error| CollectError::Setup(format!("the experiment cannot be written: {error}")))
+        let text = text.map_err(|error| CollectError::Setup(format!("the experiment cannot be written: {error}")))?;
+        Ok(Self(Arc::new(Parts { text, files: Arc::clone(experiment.files()) })))
     }
 
     /// The text.
     pub fn as_str(&self) -> &str {
-        &self.0
+        &self.0.text
+    }
+
+    /// Its layers, for whoever puts it together again; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// Where the text is no TOML.
+    pub fn layers(&self, name: &str) -> Result<Layers, Faults> {
+        Ok(Layers::from_text(name, &self.0.text)?.with_folder(Folder::Sent(Arc::clone(&self.0.files))))
     }
 
     /// Whether both are the same; texts that are shared are not read for that.
@@ -91,16 +115,37 @@ impl ExperimentText {
     }
 }
 
+/// Of a text that names no files.
 impl From<String> for ExperimentText {
     fn from(text: String) -> Self {
-        Self(text.into())
+        Self(Arc::new(Parts { text, files: Arc::default() }))
     }
 }
 
-impl From<ExperimentText> for String {
-    fn from(text: ExperimentText) -> Self {
-        text.0.as_ref().to_owned()
+impl From<Written> for ExperimentText {
+    fn from(written: Written) -> Self {
+        let files = written.files.into_iter().map(|(path, digits)| (path, unhex(&digits).into())).collect();
+        Self(Arc::new(Parts { text: written.text, files: Arc::new(files) }))
     }
+}
+
+impl From<ExperimentText> for Written {
+    fn from(text: ExperimentText) -> Self {
+        let files = text.0.files.iter().map(|(path, bytes)| (path.clone(), hex(bytes))).collect();
+        Self { text: text.0.text.clone(), files }
+    }
+}
+
+/// Two digits for each byte.
+fn hex(bytes: &[u8]) -> String {
+    let digit = |half: u8| char::from_digit(u32::from(half), 16).unwrap_or('0');
+    bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
+}
+
+/// The bytes of pairs of digits; what is none is left out, and the experiment tells that its files are others.
+fn unhex(digits: &str) -> Vec<u8> {
+    let pair = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
+    digits.as_bytes().chunks(2).filter_map(pair).collect()
 }
 
 /// Where episodes run, and what acts in them.

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_algos::{LearnError, StateError};
 use hwasp_core::{Batch, Executor, Policy, Sampler, Serial};
-use hwasp_experiment::{Catalogue, Layers, resolve};
+use hwasp_experiment::{Catalogue, resolve};
 use hwasp_problem::World;
 
 use crate::assemble::{AssembleError, Assembly};
@@ -103,7 +103,7 @@ impl Worker {
             experiments[..=at].rotate_right(1);
             return Ok(Arc::clone(&experiments[0]));
         }
-        let layers = Layers::from_text("the requested experiment", text.as_str()).map_err(|error| setup(&error))?;
+        let layers = text.layers("the requested experiment").map_err(|error| setup(&error))?;
         let experiment = resolve(layers, None, &self.catalogue).map_err(|error| setup(&error))?;
         let assembly = Assembly::new(&experiment).map_err(|error| setup(&error))?;
         experiments.truncate(KEPT - 1);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
+use hwasp_settings::Folder;
 use hwasp_settings::text::shorten;
 use hwasp_training::{Assembly, params_at};
 use serde::Deserialize;
@@ -103,7 +104,7 @@ pub fn saved_experiment(path: &Path, assignments: &[String], catalogue: &Catalog
     }
     let text = read_limited(&file, LONGEST_FILE as u64)?;
     let text = String::from_utf8_lossy(&text);
-    let layers = Layers::from_text(&file.to_string_lossy(), &text)?;
+    let layers = Layers::from_text(&file.to_string_lossy(), &text)?.with_folder(Folder::Disk(path.to_owned()));
     let layers = assignments.iter().fold(layers, |layers, set| layers.with_assignment(set));
     let experiment = resolve(layers, None, catalogue)?;
     check_unchanged(path, &text)?;

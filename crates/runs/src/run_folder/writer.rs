@@ -49,6 +49,8 @@ pub struct RunFolder {
     path: PathBuf,
     keeping: Keeping,
     _lock: RunLock,
+    /// The files that the experiment names, which lie beside it.
+    named: Arc<hwasp_settings::Files>,
     /// `experiment.toml` and `provenance.json`.
     head: [(&'static str, Vec<u8>); 2],
     store: CheckpointStore,
@@ -161,6 +163,7 @@ impl RunFolder {
             path: path.to_owned(),
             keeping,
             _lock: lock,
+            named: Arc::clone(spec.files()),
             head,
             store,
             table: None,
@@ -235,6 +238,13 @@ impl RunFolder {
     }
 
     fn write_head(&self) -> Result<(), RunError> {
+        for (path, contents) in self.named.iter() {
+            if let Some((folder, _)) = path.rsplit_once('/') {
+                let folder = self.path.join(folder);
+                fs::create_dir_all(&folder).map_err(|e| io_error("create", &folder, e))?;
+            }
+            self.write(path, contents)?;
+        }
         self.head.iter().try_for_each(|(name, contents)| self.write(name, contents))
     }
 

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use hwasp_mujoco::engine::{Shape, Simulation};
+use hwasp_mujoco::engine::{FieldPath, Files, Shape, Simulation, Spec};
 
 /// A mass of all objects, kg.
 pub(crate) const MASS: f64 = 0.2;
@@ -107,6 +107,21 @@ pub(crate) const HOPPER: &str = r#"<mujoco model="leg">
   </actuator>
 </mujoco>"#;
 
+/// A set of files from texts.
+pub(crate) fn files(texts: &[(&str, &str)]) -> Files {
+    Files::new(texts.iter().map(|&(path, text)| (path, text.as_bytes()))).unwrap()
+}
+
+/// A specification of one text.
+pub(crate) fn spec(text: &str) -> Spec {
+    Spec::parse("model.xml", &files(&[("model.xml", text)])).unwrap()
+}
+
+/// A path, as a text has it.
+pub(crate) fn path(text: &str) -> FieldPath {
+    text.parse().unwrap()
+}
+
 /// The bits of the state after each of some steps with controls that move everything.
 pub(crate) fn run(simulation: &mut Simulation, steps: u32) -> Vec<u64> {
     let mut bits = Vec::new();
@@ -118,4 +133,9 @@ pub(crate) fn run(simulation: &mut Simulation, steps: u32) -> Vec<u64> {
         bits.extend(simulation.qpos().iter().chain(simulation.qvel()).map(|value| value.to_bits()));
     }
     bits
+}
+
+/// A tetrahedron with edges of `size` m, as OBJ.
+pub(crate) fn mesh(size: f64) -> String {
+    format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
 }

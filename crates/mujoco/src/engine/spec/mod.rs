@@ -12,6 +12,7 @@ mod scan;
 mod unused;
 mod urdf;
 mod value;
+mod visual;
 mod write;
 
 use mujoco_rs::prelude::{MjEditError, MjModel, MjSpec};

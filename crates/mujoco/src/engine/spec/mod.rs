@@ -1,5 +1,6 @@
 //! Models that are changed before they are compiled: [`Spec`].
 
+mod add;
 mod check;
 mod error;
 mod fields;

@@ -30,6 +30,18 @@ impl ActuatorId {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TendonId(pub(super) usize);
 
+/// A site of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SiteId(pub(super) usize);
+
+/// A sensor of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SensorId(pub(super) usize);
+
+/// A keyframe of the model, as [`GeomId`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct KeyframeId(pub(super) usize);
+
 /// A camera of the model, as [`GeomId`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CameraId(pub(super) usize);
@@ -44,8 +56,18 @@ pub struct JointAddress {
     pub dof: Range<usize>,
 }
 
+impl JointAddress {
+    /// That of a joint by its index, which the model has.
+    pub(super) fn of(model: &MjModel, joint: usize) -> Self {
+        Self {
+            qpos: range(model.jnt_qposadr(), joint, model.nq() as usize),
+            dof: range(model.jnt_dofadr(), joint, model.nv() as usize),
+        }
+    }
+}
+
 /// What a name stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Kind {
     /// A body.
@@ -60,6 +82,16 @@ pub enum Kind {
     Tendon,
     /// A camera.
     Camera,
+    /// A site.
+    Site,
+    /// A sensor.
+    Sensor,
+    /// A keyframe.
+    Keyframe,
+    /// An equality constraint.
+    Equality,
+    /// The model's options, of which there is one set, without a name.
+    Options,
 }
 
 impl fmt::Display for Kind {
@@ -71,6 +103,11 @@ impl fmt::Display for Kind {
             Self::Actuator => "actuator",
             Self::Tendon => "tendon",
             Self::Camera => "camera",
+            Self::Site => "site",
+            Self::Sensor => "sensor",
+            Self::Keyframe => "keyframe",
+            Self::Equality => "equality",
+            Self::Options => "option",
         })
     }
 }
@@ -112,6 +149,21 @@ impl Simulation {
         self.look_up(Kind::Tendon, name).map(TendonId)
     }
 
+    /// The site of that name.
+    pub fn site(&self, name: &str) -> Result<SiteId, UnknownName> {
+        self.look_up(Kind::Site, name).map(SiteId)
+    }
+
+    /// The sensor of that name.
+    pub fn sensor(&self, name: &str) -> Result<SensorId, UnknownName> {
+        self.look_up(Kind::Sensor, name).map(SensorId)
+    }
+
+    /// The keyframe of that name.
+    pub fn keyframe(&self, name: &str) -> Result<KeyframeId, UnknownName> {
+        self.look_up(Kind::Keyframe, name).map(KeyframeId)
+    }
+
     /// The camera of that name.
     pub fn camera(&self, name: &str) -> Result<CameraId, UnknownName> {
         self.look_up(Kind::Camera, name).map(CameraId)
@@ -119,12 +171,7 @@ impl Simulation {
 
     /// Where the joint of that name stands in the state.
     pub fn joint(&self, name: &str) -> Result<JointAddress, UnknownName> {
-        let id = self.look_up(Kind::Joint, name)?;
-        let model = self.model();
-        Ok(JointAddress {
-            qpos: range(model.jnt_qposadr(), id, self.qpos().len()),
-            dof: range(model.jnt_dofadr(), id, self.qvel().len()),
-        })
+        Ok(JointAddress::of(self.model(), self.look_up(Kind::Joint, name)?))
     }
 
     /// Compares every name: the engine's own look-up wants a C string, and this is done once.
@@ -139,7 +186,8 @@ impl Simulation {
     }
 }
 
-fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
+/// How the engine calls a kind, and how many it has.
+pub(super) fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
     match kind {
         Kind::Body => (MjtObjBase::mjOBJ_BODY, model.body_mass().len()),
         Kind::Geom => (MjtObjBase::mjOBJ_GEOM, model.geom_size().len()),
@@ -147,6 +195,11 @@ fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
         Kind::Actuator => (MjtObjBase::mjOBJ_ACTUATOR, model.nactuator() as usize),
         Kind::Tendon => (MjtObjBase::mjOBJ_TENDON, model.ntendon() as usize),
         Kind::Camera => (MjtObjBase::mjOBJ_CAMERA, model.ncam() as usize),
+        Kind::Site => (MjtObjBase::mjOBJ_SITE, model.nsite() as usize),
+        Kind::Sensor => (MjtObjBase::mjOBJ_SENSOR, model.nsensor() as usize),
+        Kind::Keyframe => (MjtObjBase::mjOBJ_KEY, model.nkey() as usize),
+        Kind::Equality => (MjtObjBase::mjOBJ_EQUALITY, model.neq() as usize),
+        Kind::Options => (MjtObjBase::mjOBJ_UNKNOWN, 0),
     }
 }
 

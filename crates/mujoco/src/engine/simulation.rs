@@ -2,22 +2,10 @@
 
 use mujoco_rs::prelude::{MjData, MjModel};
 
-use super::{BodyId, GeomId, PhysicsFault, TendonId, Warning, log};
+use super::{BodyId, BuildError, GeomId, PhysicsFault, TendonId, Warning, log};
 
 /// Above this the engine calls a value bad (`mjMAXVAL`).
 const MAX_VALUE: f64 = 1e10;
-
-/// Why no simulation could be built.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// The engine does not take the MJCF text.
-    #[error("MuJoCo does not take the model: {0}")]
-    Mjcf(String),
-    /// There is no memory for the state.
-    #[error("MuJoCo cannot allocate the simulation: {0}")]
-    Allocation(String),
-}
 
 /// A force and a torque on a body, in the world's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,6 +32,11 @@ impl Simulation {
     pub fn from_mjcf(mjcf: &str) -> Result<Self, BuildError> {
         log::install();
         let model = MjModel::from_xml_string(mjcf).map_err(|error| BuildError::Mjcf(error.to_string()))?;
+        Self::new(model)
+    }
+
+    /// A simulation of a compiled model.
+    pub(super) fn new(model: MjModel) -> Result<Self, BuildError> {
         let data = MjData::try_new(Box::new(model)).map_err(|error| BuildError::Allocation(error.to_string()))?;
         Ok(Self { data, fault: None })
     }

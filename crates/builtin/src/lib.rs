@@ -35,7 +35,7 @@ pub fn catalogue() -> Catalogue {
 }
 
 fn all() -> Result<Catalogue, CatalogueError> {
-    Catalogue::default()
+    let catalogue = Catalogue::default()
         .with_learner(PpoKind)?
         .with_learner(TrpoKind)?
         .with(Stiffness)?
@@ -43,5 +43,8 @@ fn all() -> Result<Catalogue, CatalogueError> {
         .with(ReachProblem)?
         .with(PendulumProblem)?
         .with(GraspProblem::vertical(ENGINE))?
-        .with(GraspProblem::spatial(ENGINE))
+        .with(GraspProblem::spatial(ENGINE))?;
+    #[cfg(feature = "mujoco")]
+    let catalogue = catalogue.with(hwasp_model::ModelProblem)?;
+    Ok(catalogue)
 }

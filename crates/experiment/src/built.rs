@@ -17,15 +17,9 @@ const LONGEST_NAME: usize = 58;
 pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Result<Built, AnyError> {
     let built = problem.build(settings)?;
     let (env, groups) = (&built.training.env, built.training.law.design().groups());
-    if groups.is_empty() {
-        return Err("the law has no design parameter, so that there is nothing to design".into());
-    }
     if built.optimum.len() != groups.len() {
         let (given, needed) = (built.optimum.len(), groups.len());
         return Err(format!("the optimum of {given} design groups is given, but there are {needed}").into());
-    }
-    if env.effort.iter().any(|port| port.dimension != env.effort[0].dimension) {
-        return Err("its efforts measure different things; the exploration of efforts has one size for all".into());
     }
     if !(1..=MOST_STEPS).contains(&env.horizon) {
         return Err(format!("its horizon is {} steps, not between 1 and {MOST_STEPS}", env.horizon).into());

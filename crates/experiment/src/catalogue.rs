@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hwasp_algos::LearnerKind;
-use hwasp_problem::{AnyError, AnyProblem, Preset};
+use hwasp_problem::{AnyError, AnyProblem, FaultsTold, Preset};
 use hwasp_settings::described;
 use thiserror::Error;
 
@@ -98,7 +98,11 @@ impl Catalogue {
             };
             return Err(CatalogueError::Setting { problem: name, key: field.key.clone(), why });
         }
-        build(&*problem, &*problem.defaults()).map_err(|source| CatalogueError::Build { problem: name, source })?;
+        match build(&*problem, &*problem.defaults()) {
+            // One that needs settings: a model, for one.
+            Err(source) if !source.is::<FaultsTold>() => return Err(CatalogueError::Build { problem: name, source }),
+            _ => {}
+        }
         self.problems.push(problem);
         Ok(self)
     }

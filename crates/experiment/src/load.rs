@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::Arc;
 
 use hwasp_settings::text::shorten;
 use hwasp_settings::{Faults, Folder, LONGEST_FILE, Layers, listed, nearest};
@@ -16,7 +17,8 @@ pub const EXPERIMENT: &str = "experiment.toml";
 pub fn load(name_or_path: &str, catalogue: &Catalogue) -> Result<Layers, Faults> {
     let presets = catalogue.presets();
     if let Some(preset) = presets.iter().find(|preset| preset.name == name_or_path) {
-        return Layers::from_text(preset.name, preset.text);
+        let files = preset.files.iter().map(|(path, text)| ((*path).to_owned(), Arc::from(text.as_bytes())));
+        return Ok(Layers::from_text(preset.name, preset.text)?.with_folder(Folder::Sent(Arc::new(files.collect()))));
     }
     let names = || presets.iter().map(|preset| preset.name);
     let path = Path::new(name_or_path);

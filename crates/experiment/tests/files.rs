@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
+use std::sync::Arc;
+
 use hwasp_algos::{PpoConfig, TrpoConfig};
-use hwasp_experiment::{Experiment, InitialDesign, Layers, Method, Place};
+use hwasp_experiment::{Experiment, Folder, InitialDesign, Layers, Method, Place};
 use hwasp_tasks::mass_spring::StiffnessTask;
 use hwasp_testing::{catalogue, layers as load, resolve};
 use proptest::prelude::*;
@@ -13,6 +15,7 @@ fn read_back(spec: &Experiment) -> Experiment {
     let text = spec.to_toml().expect("a spec is made of what TOML has");
     assert!(!text.contains("[methods"), "{text}");
     let layers = Layers::from_text("experiment.toml", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let layers = layers.with_folder(Folder::Sent(Arc::clone(spec.files())));
     resolve(layers, None).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 

@@ -1,5 +1,7 @@
 //! Formulas that were read: scalar operations on numbered inputs.
 
+use std::collections::HashMap;
+
 use hwasp_diff::{Binary, Program, Scalar, Unary, Var};
 
 use crate::check::Checker;
@@ -118,18 +120,29 @@ impl Formulas {
     }
 
     /// The program that gives some scalars under names, from inputs of these names.
-    ///
-    /// # Panics
-    /// If a formula reads an input beyond the names.
     pub fn program(&self, uniforms: &[String], columns: &[String], outputs: Vec<(String, Part)>) -> Program {
-        Program::trace(uniforms, columns, |u, c| {
+        let columns: Vec<(usize, String)> = columns.iter().cloned().enumerate().collect();
+        self.program_over(uniforms, &columns, outputs)
+    }
+
+    /// The same from some of the columns, in the order in which they are named here.
+    pub fn program_over(
+        &self,
+        uniforms: &[String],
+        columns: &[(usize, String)],
+        outputs: Vec<(String, Part)>,
+    ) -> Program {
+        let names: Vec<&String> = columns.iter().map(|(_, name)| name).collect();
+        let place: HashMap<usize, usize> = columns.iter().enumerate().map(|(at, (column, _))| (*column, at)).collect();
+        Program::trace(uniforms, &names, |u, c| {
+            // What only other programs read is no input of this one.
+            let absent = || Var::constant(f64::NAN);
             let mut values: Vec<Var<'_>> = Vec::with_capacity(self.steps.len());
             for step in &self.steps {
                 let value = match *step {
                     Step::Constant(value) => Var::constant(value),
-                    // Inputs that only other programs read are not among the names.
-                    Step::Uniform(i) => u.get(i).copied().unwrap_or_else(|| Var::constant(f64::NAN)),
-                    Step::Column(i) => c.get(i).copied().unwrap_or_else(|| Var::constant(f64::NAN)),
+                    Step::Uniform(i) => u.get(i).copied().unwrap_or_else(absent),
+                    Step::Column(i) => place.get(&i).map_or_else(absent, |&at| c[at]),
                     Step::Unary(op, a) => unary(op, values[a.0 as usize]),
                     Step::Binary(op, a, b) => binary(op, values[a.0 as usize], values[b.0 as usize]),
                 };

@@ -224,8 +224,7 @@ impl Checker<'_> {
         let count = together(&[&a, &b], span)?.max(self.scope.width());
         let from = if name == "normal" { Distribution::Normal } else { Distribution::Uniform };
         let drawn = self.scope.draw(self.formulas, from, count);
-        let parts =
-            drawn.map_err(|why| ExprError::new(span.clone(), why).hint("draws are for starts and [task.randomise]"))?;
+        let parts = drawn.map_err(|why| ExprError::new(span.clone(), why))?;
         let drawn = Value { parts, quantity: Quantity::Number };
         let result = match name {
             "normal" => {

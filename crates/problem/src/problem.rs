@@ -12,6 +12,21 @@ pub struct Preset {
     pub name: &'static str,
     /// The experiment file.
     pub text: &'static str,
+    /// The files that it names, by their paths from its folder.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+impl Preset {
+    /// An experiment by itself.
+    pub const fn new(name: &'static str, text: &'static str) -> Self {
+        Self { name, text, files: &[] }
+    }
+
+    /// The same with the files that it names.
+    #[must_use]
+    pub const fn with_files(self, files: &'static [(&'static str, &'static str)]) -> Self {
+        Self { files, ..self }
+    }
 }
 
 /// A problem: a mechanism, the world that it works in, and what it is for.

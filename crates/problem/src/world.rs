@@ -31,6 +31,11 @@ impl World {
         Self { law, env, make, later: None }
     }
 
+    /// The same of environments that are known from outside, so that none is made to ask it.
+    pub fn described(law: Law, env: EnvSpec, make: Arc<dyn MakeEnvironment>) -> Self {
+        Self { law, env, make, later: None }
+    }
+
     /// A world whose physics are set up when they are asked for: a model that has to be compiled, an engine that may be missing.
     /// `env` is what the environments will be from outside.
     pub fn later(

@@ -231,6 +231,13 @@ impl<'f, 'r> Fields<'f, 'r> {
         );
     }
 
+    /// Called when all fields before were read, and in no other case: for settings that only mean something together.
+    pub fn finally(&mut self, read: impl FnOnce(&Section<'r>)) {
+        if let Purpose::Read(section) = &mut self.purpose {
+            read(section);
+        }
+    }
+
     /// Holds values against each other while they are read: unless `holds`, the fault is told at the key. To be asked only
     /// of values that were sound by themselves ([`sound`](Self::sound)).
     pub fn check(&mut self, key: &str, holds: bool, fault: impl FnOnce() -> (String, String)) {

@@ -181,6 +181,11 @@ impl<'r> Section<'r> {
         self.reader.fault(Some(origin), &self.path(key), message, hint);
     }
 
+    /// The value of a key that was asked for, to look at again.
+    pub fn node(&self, key: &str) -> Option<&'r Node> {
+        self.table?.get(key).map(|entry| &entry.node)
+    }
+
     /// Where the files are that the experiment names.
     pub fn folder(&self) -> &'r Folder {
         self.reader.folder

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
-use hwasp_experiment::{Catalogue, Layers, resolve};
+use hwasp_experiment::{Catalogue, load, resolve};
 
 use crate::failure::Failure;
 use crate::output;
@@ -23,8 +23,7 @@ pub(crate) fn run(catalogue: &Catalogue) -> Result<(), Failure> {
         let _ = writeln!(text, "{name:width$}  {}", lines.join(&format!("\n{:width$}  ", "")));
     };
     for preset in &presets {
-        let layers = Layers::from_text(preset.name, preset.text)?;
-        let experiment = resolve(layers, None, catalogue)?;
+        let experiment = resolve(load(preset.name, catalogue)?, None, catalogue)?;
         entry(preset.name, &experiment.description);
     }
     for problem in catalogue.problems().iter().filter(|problem| problem.presets().is_empty()) {

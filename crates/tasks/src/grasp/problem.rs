@@ -101,12 +101,8 @@ impl Problem for GraspProblem {
 
     fn presets(&self) -> Vec<Preset> {
         vec![match self.palm {
-            PalmMotion::Vertical => {
-                Preset { name: "z-grasp", text: include_str!("../../../../experiments/z-grasp.toml") }
-            }
-            PalmMotion::Spatial => {
-                Preset { name: "3d-grasp", text: include_str!("../../../../experiments/3d-grasp.toml") }
-            }
+            PalmMotion::Vertical => Preset::new("z-grasp", include_str!("../../../../experiments/z-grasp.toml")),
+            PalmMotion::Spatial => Preset::new("3d-grasp", include_str!("../../../../experiments/3d-grasp.toml")),
         }]
     }
 }

@@ -179,13 +179,10 @@ impl Problem for Stiffness {
 
     fn presets(&self) -> Vec<Preset> {
         vec![
-            Preset { name: "mass-spring", text: include_str!("../../../../experiments/mass-spring.toml") },
-            Preset { name: "mass-spring-50", text: include_str!("../../../../experiments/mass-spring-50.toml") },
-            Preset { name: "paper/mass-spring", text: include_str!("../../../../experiments/paper/mass-spring.toml") },
-            Preset {
-                name: "paper/mass-spring-50",
-                text: include_str!("../../../../experiments/paper/mass-spring-50.toml"),
-            },
+            Preset::new("mass-spring", include_str!("../../../../experiments/mass-spring.toml")),
+            Preset::new("mass-spring-50", include_str!("../../../../experiments/mass-spring-50.toml")),
+            Preset::new("paper/mass-spring", include_str!("../../../../experiments/paper/mass-spring.toml")),
+            Preset::new("paper/mass-spring-50", include_str!("../../../../experiments/paper/mass-spring-50.toml")),
         ]
     }
 }
@@ -276,13 +273,10 @@ impl Problem for BarLength {
 
     fn presets(&self) -> Vec<Preset> {
         vec![
-            Preset { name: "bar-length", text: include_str!("../../../../experiments/bar-length.toml") },
-            Preset { name: "bar-length-50", text: include_str!("../../../../experiments/bar-length-50.toml") },
-            Preset { name: "paper/bar-length", text: include_str!("../../../../experiments/paper/bar-length.toml") },
-            Preset {
-                name: "paper/bar-length-50",
-                text: include_str!("../../../../experiments/paper/bar-length-50.toml"),
-            },
+            Preset::new("bar-length", include_str!("../../../../experiments/bar-length.toml")),
+            Preset::new("bar-length-50", include_str!("../../../../experiments/bar-length-50.toml")),
+            Preset::new("paper/bar-length", include_str!("../../../../experiments/paper/bar-length.toml")),
+            Preset::new("paper/bar-length-50", include_str!("../../../../experiments/paper/bar-length-50.toml")),
         ]
     }
 }

@@ -47,8 +47,8 @@ impl Problem for PendulumProblem {
 
     fn presets(&self) -> Vec<Preset> {
         vec![
-            Preset { name: "pendulum", text: include_str!("../../../../experiments/pendulum.toml") },
-            Preset { name: "pendulum-trpo", text: include_str!("../../../../experiments/pendulum-trpo.toml") },
+            Preset::new("pendulum", include_str!("../../../../experiments/pendulum.toml")),
+            Preset::new("pendulum-trpo", include_str!("../../../../experiments/pendulum-trpo.toml")),
         ]
     }
 }

@@ -48,6 +48,6 @@ impl Problem for ReachProblem {
     }
 
     fn presets(&self) -> Vec<Preset> {
-        vec![Preset { name: "reach", text: include_str!("../../../../experiments/reach.toml") }]
+        vec![Preset::new("reach", include_str!("../../../../experiments/reach.toml"))]
     }
 }

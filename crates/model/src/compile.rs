@@ -1,0 +1,236 @@
+//! From what an experiment says to a robot.
+
+use std::sync::{Arc, Mutex};
+
+use hwasp_expr::{Formulas, Part, Quantity, Value};
+use hwasp_mujoco::engine::{Files, Simulation, Spec};
+use hwasp_settings::{Section, listed, nearest};
+
+use crate::anatomy::Anatomy;
+use crate::columns::{Column, Stage};
+use crate::corners::check_corners;
+use crate::names::{InPlace, Names, Place};
+use crate::robot::{Additions, Formula, Outputs, Robot, Shaping};
+use crate::settings::{ModelSettings, Readings};
+use crate::texts::{node_at, tell, tell_at};
+
+/// Steps of an episode where an experiment says nothing.
+const HORIZON: usize = 1000;
+/// The most columns that a law's states and an observation have.
+const MOST_OBSERVED: usize = 10_000;
+
+mod episode;
+mod ports;
+mod shaping;
+
+use self::episode::Watched;
+
+/// What is compiled, and where its faults are told.
+pub(super) struct Compiler<'c, 'r> {
+    settings: &'c ModelSettings,
+    section: &'c Section<'r>,
+    formulas: Formulas,
+    names: Names,
+    sound: bool,
+}
+
+impl Robot {
+    /// Compiles what was said. What is wrong is told at its place; there is none then.
+    pub(crate) fn compile(settings: &ModelSettings, section: &Section<'_>) -> Option<Self> {
+        let files = settings.files.iter().map(|(path, bytes)| (path.clone(), Arc::clone(bytes)));
+        let whole = 0..settings.model.len();
+        let refuse = |message: &str, hint: Option<String>| tell_at(section, &["model"], &whole, message, hint);
+        let files = match Files::new(files) {
+            Ok(files) => files,
+            Err(error) => {
+                refuse(&error.to_string(), None);
+                return None;
+            }
+        };
+        let additions = Additions {
+            floor: settings.floor,
+            free_base: settings.base == crate::settings::Base::Free,
+            motors: settings
+                .motors
+                .iter()
+                .map(|motor| (motor.name.clone(), motor.gear, [motor.limits.low.value, motor.limits.high.value]))
+                .collect(),
+        };
+        let main = hwasp_settings::inside(&settings.model)?;
+        let hint = || Some("the model has to compile as it is, before anything is changed".to_owned());
+        let mut spec = match Spec::parse(&main, &files) {
+            Ok(spec) => spec,
+            Err(error) => {
+                refuse(&error.to_string(), hint());
+                return None;
+            }
+        };
+        if let Err(error) = additions.add(&mut spec) {
+            tell_at(section, &["motors"], &(0..0), &error.to_string(), None);
+            return None;
+        }
+        let simulation = match spec.compile() {
+            Ok(simulation) => simulation,
+            Err(error) => {
+                refuse(&error.to_string(), hint());
+                return None;
+            }
+        };
+        let anatomy = Anatomy::of(&simulation);
+        let time_step = anatomy.timestep * settings.frame_skip as f64;
+        let names = Names { anatomy, time_step, ..Names::default() };
+        let mut compiler = Compiler { settings, section, formulas: Formulas::default(), names, sound: true };
+        compiler.robot(main, files, additions, simulation, &spec)
+    }
+}
+
+impl Compiler<'_, '_> {
+    fn robot(
+        &mut self,
+        main: String,
+        files: Files,
+        additions: Additions,
+        simulation: Simulation,
+        spec: &Spec,
+    ) -> Option<Robot> {
+        let settings = self.settings;
+        let space = self.design()?;
+        let uniforms = space.names();
+        let random = self.random();
+        let targets = self.targets();
+        let direct = self.commands(&targets);
+        self.definitions(true);
+        let law = self.law();
+        let shaping = self.shaping(spec);
+        let start = self.start();
+        let Watched { observed, terms, ends, success, kinds } = self.step();
+        let forces = self.forces();
+        let delays = self.delays();
+        if !settings.keyframe.is_empty() && !self.names.anatomy.keyframes.contains(&settings.keyframe) {
+            let known = self.names.anatomy.keyframes.iter().map(String::as_str);
+            let hint = match nearest(&settings.keyframe, known.clone()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if self.names.anatomy.keyframes.is_empty() => "it has none that is named".to_owned(),
+                None => format!("it has {}", listed(known)),
+            };
+            self.refuse(&["keyframe"], format!("the model has no keyframe `{}`", settings.keyframe), Some(hint));
+        }
+        if !self.sound {
+            return None;
+        }
+        // Only now are all columns known.
+        let formula = |compiler: &Self, stage: Option<Stage>, outputs: Vec<(String, Part)>| Formula {
+            program: compiler.formulas.program(&uniforms, compiler.names.columns.names(), outputs),
+            draws: stage.map_or_else(Vec::new, |stage| compiler.names.columns.draws_of(stage)),
+        };
+        let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
+        let (law, states) = self.traced_law(&space, &law)?;
+        let shaping = shaping.map(|found| Shaping {
+            formula: formula(self, None, numbered(&found.parts)),
+            fields: found.fields,
+            parameters: found.parameters,
+        });
+        let mut outputs: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
+        let observations = outputs.len();
+        outputs.extend(terms.iter().map(|(_, part)| *part));
+        outputs.extend(ends.into_iter().chain(success));
+        outputs.extend(&kinds);
+        let memory: Vec<Part> = self.names.memory.clone();
+        outputs.extend(&memory);
+        let place = |column: Column| self.names.columns.all().iter().position(|&known| known == column);
+        let memory_columns: Vec<usize> = (0..memory.len()).filter_map(|i| place(Column::Memory(i))).collect();
+        let random = random.map(|parts| {
+            let columns = (0..parts.len()).filter_map(|i| place(Column::Random(i))).collect();
+            (formula(self, Some(Stage::Random), numbered(&parts)), columns)
+        });
+        let kind_names = settings.kinds.iter().map(|(name, _)| Arc::from(name.as_str()));
+        let other = if settings.kinds.is_empty() { "all" } else { "other" };
+        let env = self.env(&observed, &law);
+        let derived = |column: &Column| matches!(column, Column::Engine(reading) if reading.is_derived());
+        let robot = Robot {
+            env,
+            law,
+            main,
+            files,
+            additions,
+            columns: self.names.columns.all().to_vec(),
+            states,
+            random,
+            shaping,
+            start: start.map(|(parts, targets)| (formula(self, Some(Stage::Start), numbered(&parts)), targets)),
+            step: formula(self, Some(Stage::Step), numbered(&outputs)),
+            outputs: Outputs {
+                observations,
+                terms: terms.len(),
+                ends: ends.is_some(),
+                success: success.is_some(),
+                kinds: kinds.len(),
+                memory: memory.len(),
+            },
+            kinds: kind_names.chain([Arc::from(other)]).collect(),
+            terms: terms.into_iter().map(|(name, _)| name).collect(),
+            forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
+            delays: delays.map(|parts| formula(self, None, numbered(&parts))),
+            targets: targets.iter().map(|(_, target, _)| *target).collect(),
+            direct,
+            keyframe: (!settings.keyframe.is_empty()).then(|| settings.keyframe.clone()),
+            frame_skip: settings.frame_skip,
+            fresh: settings.readings == Readings::Fresh && self.names.columns.all().iter().any(derived),
+            memory: memory_columns,
+            simulation: Mutex::new(simulation),
+        };
+        match check_corners(&robot) {
+            Ok(()) => Some(robot),
+            Err(message) => {
+                let hint = "narrow the limits, or mend the formulas that set fields of the model";
+                let key = if settings.design.is_empty() { "set" } else { "design" };
+                self.refuse(&[key], message, Some(hint.into()));
+                None
+            }
+        }
+    }
+
+    fn refuse(&mut self, keys: &[&str], message: impl Into<String>, hint: Option<String>) {
+        let whole = match node_at(self.section, keys).map(|node| &node.value) {
+            Some(hwasp_settings::Value::Text(text)) => 0..text.len(),
+            _ => 0..0,
+        };
+        tell_at(self.section, keys, &whole, &message.into(), hint);
+        self.sound = false;
+    }
+
+    /// Reads a formula at the end of some keys, the first `offset` bytes of whose text are no part of it.
+    fn read(&mut self, keys: &[&str], text: &str, offset: usize, place: Place, width: usize) -> Option<Value> {
+        let formula = &text[offset..];
+        let mut scope = InPlace { names: &mut self.names, place, width };
+        let value = match self.formulas.read(formula, &mut scope) {
+            Ok(value) => value,
+            Err(error) => {
+                tell(self.section, keys, offset, &error);
+                self.sound = false;
+                return None;
+            }
+        };
+        let (columns, _) = self.formulas.inputs(&value.parts);
+        for at in columns {
+            if let Some(why) = place.refuses(self.names.columns.all()[at]) {
+                let message = format!("`{}` cannot be read here: {why}", self.names.columns.names()[at]);
+                tell_at(self.section, keys, &(offset..text.len()), &message, None);
+                self.sound = false;
+                return None;
+            }
+        }
+        Some(value)
+    }
+
+    /// A formula of one component.
+    fn scalar(&mut self, keys: &[&str], text: &str, place: Place) -> Option<(Part, Quantity)> {
+        let value = self.read(keys, text, 0, place, 1)?;
+        if let [only] = value.parts[..] {
+            return Some((only, value.quantity));
+        }
+        let message = format!("a number is wanted here, and this has {} components", value.parts.len());
+        self.refuse(keys, message, Some("sum, norm, any or a component make one of it".into()));
+        None
+    }
+}

@@ -1,0 +1,255 @@
+//! Where an episode starts, what is seen and rewarded, and what pushes.
+
+use hwasp_core::{CommandPort, Dimension, EnvSpec, Law, Port};
+use hwasp_expr::{Exponents, Part, Quantity, Value};
+use hwasp_settings::nearest;
+use hwasp_settings::text::shorten;
+
+use super::{Compiler, HORIZON, MOST_OBSERVED};
+use crate::columns::{Column, Reading};
+use crate::names::{InPlace, OwnName, Place};
+use crate::texts::{Named, tell};
+
+impl Compiler<'_, '_> {
+    /// Names for formulas, which may name each other.
+    pub(super) fn definitions(&mut self, tells: bool) {
+        let mut left: Vec<&(String, String)> = self.settings.define.iter().collect();
+        if tells {
+            left.retain(|(name, _)| self.own_name("define", name));
+        }
+        loop {
+            let before = left.len();
+            left.retain(|(name, text)| {
+                let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
+                match self.formulas.read(text, &mut scope) {
+                    Ok(value) => {
+                        self.names.own.push(OwnName { name: name.clone(), value });
+                        false
+                    }
+                    Err(_) => true,
+                }
+            });
+            if left.len() == before || left.is_empty() {
+                break;
+            }
+        }
+        if tells {
+            let names: Vec<String> = left.iter().map(|(name, _)| name.clone()).collect();
+            for (name, text) in left {
+                let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
+                let Err(mut error) = self.formulas.read(text, &mut scope) else { continue };
+                if let Some(other) = names.iter().find(|other| error.message == format!("`{other}` is not known")) {
+                    error.message = format!("`{other}` is itself wrong, or leads back to `{name}`");
+                    error.hint = Some("a definition can name those that do not name it".to_owned());
+                }
+                tell(self.section, &["define", name], 0, &error);
+                self.sound = false;
+            }
+        }
+    }
+
+    /// Where an episode starts: the values, and the positions and velocities that they are for.
+    pub(super) fn start(&mut self) -> Option<(Vec<Part>, Vec<Reading>)> {
+        let settings = self.settings;
+        let (mut parts, mut targets): (Vec<Part>, Vec<Reading>) = (Vec::new(), Vec::new());
+        for (key, text) in &settings.start {
+            let Some(places) = self.start_places(key) else { continue };
+            let Some(value) = self.read(&["start", key], text, 0, Place::Start, places.len()) else { continue };
+            let count = value.parts.len();
+            if count != 1 && count != places.len() {
+                let message = format!("{key} has {} components, and this has {count}", places.len());
+                self.refuse(&["start", key], message, Some("give one for all, or one each".into()));
+                continue;
+            }
+            if let Some(twice) = places.iter().find(|place| targets.contains(place)) {
+                let at = self.names.columns.place(Column::Engine(*twice), String::new);
+                let name = self.names.columns.names()[at].clone();
+                let hint = "let one entry be for each position and velocity";
+                self.refuse(&["start", key], format!("`{name}` starts at two values"), Some(hint.into()));
+                continue;
+            }
+            parts.extend((0..places.len()).map(|i| value.parts[if count == 1 { 0 } else { i }]));
+            targets.extend(places);
+        }
+        (!settings.start.is_empty()).then_some((parts, targets))
+    }
+
+    /// The positions and velocities that a key of `start` names.
+    pub(super) fn start_places(&mut self, key: &str) -> Option<Vec<Reading>> {
+        let mut scope = InPlace { names: &mut self.names, place: Place::Start, width: 1 };
+        let value = match self.formulas.read(key, &mut scope) {
+            Ok(value) => value,
+            Err(error) => {
+                let hint = error.hint.unwrap_or_else(|| "a start is of joint.NAME.pos or joint.NAME.vel".to_owned());
+                self.refuse(&["start", key], format!("`{key}`: {}", error.message), Some(hint));
+                return None;
+            }
+        };
+        let place = |&part: &Part| match self.names.columns.all()[self.formulas.as_column(part)?] {
+            Column::Engine(reading @ (Reading::Position(_) | Reading::Velocity(_))) => Some(reading),
+            _ => None,
+        };
+        let places: Option<Vec<Reading>> = value.parts.iter().map(place).collect();
+        if places.is_none() {
+            let message = format!("`{key}` is no position or velocity of joints");
+            self.refuse(
+                &["start", key],
+                message,
+                Some("write \"joint.*.pos\", \"joint.knee.vel\" or \"qpos[0:3]\"".into()),
+            );
+        }
+        places
+    }
+
+    /// What is seen and what it is worth.
+    pub(super) fn step(&mut self) -> Watched {
+        let settings = self.settings;
+        let all = ["joint.*.pos".to_owned(), "joint.*.vel".to_owned()];
+        let observe = if settings.observe.is_empty() { &all[..] } else { &settings.observe[..] };
+        let mut observed = Vec::new();
+        for (i, text) in observe.iter().enumerate() {
+            if let Some(value) = self.read(&["observe", &i.to_string()], text, 0, Place::Step, 1) {
+                observed.push((text.clone(), value));
+            }
+        }
+        let count: usize = observed.iter().map(|(_, value)| value.parts.len()).sum();
+        if count > MOST_OBSERVED {
+            self.refuse(&["observe"], format!("{count} values are observed, more than {MOST_OBSERVED}"), None);
+        }
+        if settings.reward.is_empty() {
+            let hint = "write [task.reward] with terms: forward = \"joint.root.vel\"";
+            self.refuse(&["reward"], "the reward has no term", Some(hint.into()));
+        }
+        let terms = self.each("reward", &settings.reward);
+        let kinds = self.each("kinds", &settings.kinds).into_iter().map(|(_, part)| part).collect();
+        let mut one = |key: &str, text: &str| {
+            if text.is_empty() { None } else { self.scalar(&[key], text, Place::Step).map(|(part, _)| part) }
+        };
+        let (ends, success) = (one("ends", &settings.ends), one("success", &settings.success));
+        Watched { observed, terms, ends, success, kinds }
+    }
+
+    /// Scalars by name.
+    pub(super) fn each(&mut self, table: &str, texts: &Named) -> Vec<(String, Part)> {
+        let mut parts = Vec::new();
+        for (name, text) in texts {
+            if let Some((part, _)) = self.scalar(&[table, name], text, Place::Step) {
+                parts.push((name.clone(), part));
+            }
+        }
+        parts
+    }
+
+    /// Forces on bodies: components, and for each body how many.
+    pub(super) fn forces(&mut self) -> Option<(Vec<Part>, Pushes)> {
+        let settings = self.settings;
+        let (mut parts, mut bodies) = (Vec::new(), Vec::new());
+        for (key, text) in &settings.forces {
+            let name = key.strip_prefix("body.").unwrap_or_default();
+            let Some(body) = self.names.anatomy.bodies.iter().position(|known| known == name && !name.is_empty())
+            else {
+                let known: Vec<String> = self.names.anatomy.bodies.iter().map(|name| format!("body.{name}")).collect();
+                let hint = match nearest(key, known.iter().map(String::as_str)) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "forces act on bodies: \"body.torso\" = \"[0, 0, 5 N]\"".to_owned(),
+                };
+                self.refuse(&["forces", key], format!("`{key}` is no body of the model"), Some(hint));
+                continue;
+            };
+            let Some(value) = self.read(&["forces", key], text, 0, Place::Force, 1) else { continue };
+            if !matches!(value.parts.len(), 3 | 6) {
+                let message =
+                    format!("a force has 3 components, or 6 with the torque, and this has {}", value.parts.len());
+                self.refuse(&["forces", key], message, Some("write [x, y, z]".into()));
+                continue;
+            }
+            bodies.push((body, value.parts.len()));
+            parts.extend(value.parts);
+        }
+        (!settings.forces.is_empty()).then_some((parts, bodies))
+    }
+
+    pub(super) fn delays(&mut self) -> Option<Vec<Part>> {
+        let settings = self.settings;
+        let texts = [("observation_delay", &settings.observation_delay), ("command_delay", &settings.command_delay)];
+        if texts.iter().all(|(_, text)| text.is_empty()) {
+            return None;
+        }
+        let zero = self.formulas.constant(0.0);
+        Some(
+            texts
+                .map(|(key, text)| {
+                    if text.is_empty() {
+                        return zero;
+                    }
+                    let Some((part, quantity)) = self.scalar(&[key], text, Place::Model) else { return zero };
+                    if !matches!(quantity, Quantity::Known(own) if own.fits(Exponents::of(Dimension::Time))) {
+                        self.refuse(
+                            &[key],
+                            format!("a delay is a time, and this is {quantity}"),
+                            Some("write it 20 ms".into()),
+                        );
+                    }
+                    part
+                })
+                .to_vec(),
+        )
+    }
+
+    /// What the environment is from outside.
+    pub(super) fn env(&mut self, observed: &[(String, Value)], law: &Law) -> EnvSpec {
+        let settings = self.settings;
+        let named = |quantity: Quantity| quantity.dimension().unwrap_or(Dimension::None);
+        let mut observation = Vec::new();
+        for (text, value) in observed {
+            for (i, &part) in value.parts.iter().enumerate() {
+                let label = self.formulas.as_column(part).map(|at| self.names.columns.names()[at].clone());
+                let several = value.parts.len() > 1;
+                let text = shorten(text, 60);
+                let name = label.unwrap_or_else(|| if several { format!("{text} [{i}]") } else { text });
+                observation.push(Port { name, dimension: named(value.quantity) });
+            }
+        }
+        let commands = self.names.commands.clone();
+        let mut command = Vec::new();
+        for (name, quantity) in &commands {
+            let declared = settings.commands.iter().find(|command| command.name == *name);
+            let of_model = self.names.anatomy.actuators.iter().find(|actuator| actuator.name == *name);
+            let limits = declared
+                .map(|declared| [declared.limits.low.value, declared.limits.high.value])
+                .or_else(|| of_model.and_then(|actuator| actuator.limits));
+            let [lo, hi] = limits.unwrap_or_else(|| {
+                let hint = format!("write commands = {{ \"{name}\" = {{ limits = [-1, 1] }} }}");
+                self.refuse(&["commands"], format!("nobody limits the command `{name}`"), Some(hint));
+                [-1.0, 1.0]
+            });
+            command.push(CommandPort { name: name.clone(), dimension: named(*quantity), lo, hi });
+        }
+        let state = law.ports().state.iter().map(|name| Port { name: name.clone(), dimension: Dimension::None });
+        let effort =
+            self.names.efforts.iter().map(|(name, quantity)| Port { name: name.clone(), dimension: named(*quantity) });
+        EnvSpec {
+            observation,
+            state: state.collect(),
+            context: vec![],
+            effort: effort.collect(),
+            command,
+            horizon: HORIZON,
+            time_step: self.names.time_step,
+        }
+    }
+}
+
+/// Bodies that are pushed, each with the components of its force.
+pub(super) type Pushes = Vec<(usize, usize)>;
+
+/// What is computed after a step.
+pub(super) struct Watched {
+    /// What is seen, by the text of its formula.
+    pub(super) observed: Vec<(String, Value)>,
+    /// Terms of the reward, by name.
+    pub(super) terms: Vec<(String, Part)>,
+    pub(super) ends: Option<Part>,
+    pub(super) success: Option<Part>,
+    pub(super) kinds: Vec<Part>,
+}

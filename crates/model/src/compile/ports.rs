@@ -1,0 +1,175 @@
+//! Commands, efforts and the law between them.
+
+use hwasp_core::{DesignSpace, Dimension, Law, Ports};
+use hwasp_expr::{Part, Quantity};
+use hwasp_settings::text::shorten;
+use hwasp_settings::{listed, nearest};
+
+use super::{Compiler, MOST_OBSERVED};
+use crate::anatomy::{Anatomy, Joint};
+use crate::columns::Column;
+use crate::names::{InPlace, Names, Place};
+use crate::robot::Target;
+
+impl Compiler<'_, '_> {
+    /// What the law acts on, by name.
+    pub(super) fn targets(&mut self) -> Vec<(String, Target, Dimension)> {
+        let mut targets = Vec::new();
+        for (name, _) in &self.settings.law {
+            match target(&self.names.anatomy, name) {
+                Ok((target, dimension)) => {
+                    let quantity =
+                        if dimension == Dimension::None { Quantity::Unknown } else { Quantity::of(dimension) };
+                    self.names.efforts.push((name.clone(), quantity));
+                    targets.push((name.clone(), target, dimension));
+                }
+                Err((message, hint)) => self.refuse(&["law", name], message, Some(hint)),
+            }
+        }
+        targets
+    }
+
+    /// What the controller commands: the actuators that it drives as they are, and commands that the law takes.
+    pub(super) fn commands(&mut self, targets: &[(String, Target, Dimension)]) -> Vec<Option<usize>> {
+        let settings = self.settings;
+        let actuators: Vec<_> = self.names.anatomy.actuators.iter().map(|actuator| actuator.name.clone()).collect();
+        let declared: Vec<&str> = settings.commands.iter().map(|command| command.name.as_str()).collect();
+        let free = declared.iter().filter(|name| !actuators.iter().any(|actuator| actuator == *name));
+        let candidates: Vec<String> = actuators.iter().cloned().chain(free.map(|name| (*name).to_owned())).collect();
+        let quantity = |name: &str| {
+            let found = settings.commands.iter().find(|command| command.name == name);
+            found.and_then(|command| command.limits.exponents()).map_or(Quantity::Unknown, Quantity::Known)
+        };
+        let read = self.read_by_law(&candidates);
+        let mut direct = Vec::new();
+        for name in candidates {
+            let actuator = actuators.iter().position(|known| *known == name);
+            let taken = actuator.is_some_and(|i| targets.iter().any(|(_, target, _)| *target == Target::Actuator(i)));
+            let by_law = read.contains(&name);
+            if taken && !by_law && !declared.contains(&name.as_str()) {
+                continue;
+            }
+            direct.push(actuator.filter(|_| !taken && !by_law));
+            self.names.commands.push((name.clone(), quantity(&name)));
+        }
+        if self.names.commands.is_empty() {
+            let message = "nothing is commanded: the model has no actuator, and [task.commands] names none".to_owned();
+            self.refuse(&["commands"], message, Some("add motors = { JOINT = { limits = [-1, 1] } }".into()));
+        }
+        direct
+    }
+
+    /// The commands that the law reads, of all that there could be.
+    pub(super) fn read_by_law(&mut self, candidates: &[String]) -> Vec<String> {
+        let names = Names {
+            anatomy: self.names.anatomy.clone(),
+            columns: self.names.columns.clone(),
+            commands: candidates.iter().map(|name| (name.clone(), Quantity::Unknown)).collect(),
+            efforts: self.names.efforts.clone(),
+            own: self.names.own.clone(),
+            memory: Vec::new(),
+            time_step: self.names.time_step,
+        };
+        let kept = (std::mem::replace(&mut self.names, names), self.formulas.clone(), self.sound);
+        self.definitions(false);
+        let mut read = Vec::new();
+        for (_, text) in &self.settings.law {
+            let mut scope = InPlace { names: &mut self.names, place: Place::Law, width: 1 };
+            let Ok(value) = self.formulas.read(text, &mut scope) else { continue };
+            let (columns, _) = self.formulas.inputs(&value.parts);
+            read.extend(columns.into_iter().filter_map(|at| match self.names.columns.all()[at] {
+                Column::Command(i) => Some(candidates[i].clone()),
+                _ => None,
+            }));
+        }
+        (self.names, self.formulas, self.sound) = kept;
+        read
+    }
+
+    /// The efforts of the law.
+    pub(super) fn law(&mut self) -> Vec<Part> {
+        let settings = self.settings;
+        let mut parts = Vec::new();
+        for (i, (name, text)) in settings.law.iter().enumerate() {
+            let Some((part, quantity)) = self.scalar(&["law", name], text, Place::Law) else { continue };
+            let wanted = self.names.efforts.get(i).map_or(Quantity::Unknown, |(_, quantity)| *quantity);
+            if let (Quantity::Known(a), Quantity::Known(b)) = (quantity, wanted)
+                && !a.fits(b)
+            {
+                let message = format!("the effort is in {a}, and {name} takes {b}");
+                self.refuse(&["law", name], message, Some("see the units of the parameters and commands in it".into()));
+                continue;
+            }
+            parts.push(part);
+        }
+        parts
+    }
+
+    /// The law with its ports; its states are what it reads beside commands and design.
+    pub(super) fn traced_law(&mut self, space: &DesignSpace, parts: &[Part]) -> Option<(Law, Vec<usize>)> {
+        let (read, _) = self.formulas.inputs(parts);
+        let all = self.names.columns.all();
+        let states: Vec<usize> = read.into_iter().filter(|&at| !matches!(all[at], Column::Command(_))).collect();
+        if states.len() > MOST_OBSERVED {
+            self.refuse(&["law"], format!("the law reads {} values, more than {MOST_OBSERVED}", states.len()), None);
+            return None;
+        }
+        let commands: Vec<(usize, String)> = self
+            .names
+            .commands
+            .iter()
+            .enumerate()
+            .map(|(i, (name, _))| {
+                let at = self.names.columns.all().iter().position(|&column| column == Column::Command(i));
+                (at.unwrap_or(usize::MAX - i), name.clone())
+            })
+            .collect();
+        let labels = self.names.columns.names();
+        let columns: Vec<(usize, String)> =
+            commands.iter().cloned().chain(states.iter().map(|&at| (at, labels[at].clone()))).collect();
+        let outputs: Vec<(String, Part)> =
+            self.names.efforts.iter().map(|(name, _)| name.clone()).zip(parts.iter().copied()).collect();
+        let ports = Ports {
+            command: commands.into_iter().map(|(_, name)| name).collect(),
+            state: states.iter().map(|&at| labels[at].clone()).collect(),
+            effort: outputs.iter().map(|(name, _)| name.clone()).collect(),
+        };
+        let program = self.formulas.program_over(&space.names(), &columns, outputs);
+        match Law::from_program(program, space.clone(), ports) {
+            Ok(law) => Some((law, states)),
+            Err(error) => {
+                self.refuse(&["law"], error.to_string(), None);
+                None
+            }
+        }
+    }
+}
+
+/// What a key of the law acts on, and what it takes; else what is wrong, and a way out.
+fn target(anatomy: &Anatomy, name: &str) -> Result<(Target, Dimension), (String, String)> {
+    let (kind, element) = name.split_once('.').unwrap_or((name, ""));
+    let joints: Vec<&Joint> = anatomy.joints.iter().filter(|joint| joint.dof.len() == 1).collect();
+    let names: Vec<&str> = match kind {
+        "joint" => joints.iter().map(|joint| joint.name.as_str()).collect(),
+        "tendon" => anatomy.tendons.iter().map(String::as_str).collect(),
+        "actuator" => anatomy.actuators.iter().map(|actuator| actuator.name.as_str()).collect(),
+        _ => {
+            let message = format!("`{}` is nothing that a law acts on", shorten(name, 60));
+            return Err((message, "write \"joint.NAME\", \"tendon.NAME\" or \"actuator.NAME\"".to_owned()));
+        }
+    };
+    let found = names.iter().position(|known| *known == element && !element.is_empty());
+    let Some(at) = found else {
+        let hint = match nearest(element, names.iter().copied()) {
+            Some(near) => format!("did you mean `{kind}.{near}`?"),
+            None if names.is_empty() => format!("the model has no {kind} that a law could act on"),
+            None => format!("known here: {}", listed(names.iter().copied())),
+        };
+        return Err((format!("the model has no {kind} `{}`", shorten(element, 60)), hint));
+    };
+    Ok(match kind {
+        "joint" => (Target::Joint(joints[at].dof.start), joints[at].effort()),
+        "tendon" => (Target::Tendon(at), Dimension::Force),
+        _ => (Target::Actuator(at), Dimension::None),
+    })
+}

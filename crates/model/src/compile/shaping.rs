@@ -1,0 +1,136 @@
+//! The design, what is drawn for an episode, and the fields of the model that follow both.
+
+use hwasp_core::{DesignGroup, DesignSpace, Initial};
+use hwasp_expr::{Part, Quantity, Value};
+use hwasp_mujoco::engine::{FieldPath, Spec};
+use hwasp_settings::text::shorten;
+
+use super::Compiler;
+use crate::columns::Column;
+use crate::names::{OwnName, Place};
+use crate::parameter::name_fault;
+use crate::texts::tell_at;
+
+impl Compiler<'_, '_> {
+    pub(super) fn design(&mut self) -> Option<DesignSpace> {
+        let mut groups = Vec::new();
+        for (i, parameter) in self.settings.design.iter().enumerate() {
+            let (low, high) = (parameter.limits.low.value, parameter.limits.high.value);
+            groups.push(DesignGroup {
+                name: parameter.name.clone(),
+                dimension: parameter.dimension()?,
+                lo: low,
+                hi: high,
+                count: 1,
+                initial: Initial::Value(parameter.initial.as_ref().map_or(0.5 * (low + high), |initial| initial.value)),
+            });
+            let quantity = parameter.limits.exponents().map_or(Quantity::Unknown, Quantity::Known);
+            let value = Value { parts: vec![self.formulas.uniform(i)], quantity };
+            self.names.own.push(OwnName { name: parameter.name.clone(), value });
+        }
+        match DesignSpace::new(groups) {
+            Ok(space) => Some(space),
+            Err(error) => {
+                self.refuse(&["design"], error.to_string(), None);
+                None
+            }
+        }
+    }
+
+    /// Whether names of one's own can be called so; faults are told.
+    pub(super) fn own_name(&mut self, table: &str, name: &str) -> bool {
+        let why = name_fault(name).or_else(|| {
+            let known = self.names.own.iter().any(|own| own.name == name);
+            known.then(|| "something else has this name".to_owned())
+        });
+        if let Some(why) = why {
+            let message = format!("`{}` cannot be called so: {why}", shorten(name, 60));
+            self.refuse(&[table, name], message, Some("take another name".into()));
+            return false;
+        }
+        true
+    }
+
+    /// What is drawn for an episode: its components, which have columns of their own.
+    pub(super) fn random(&mut self) -> Option<Vec<Part>> {
+        let texts = &self.settings.random;
+        let mut parts = Vec::new();
+        let mut drawn: Vec<OwnName> = Vec::new();
+        for (name, text) in texts {
+            if !self.own_name("random", name) {
+                continue;
+            }
+            let Some(value) = self.read(&["random", name], text, 0, Place::Model, 1) else { continue };
+            let first = parts.len();
+            parts.extend(&value.parts);
+            // Those that come later see the draw itself, formulas of other places its column.
+            let columns = (first..parts.len()).map(|i| {
+                self.formulas.column(self.names.columns.place(Column::Random(i), || format!("{name}[{}]", i - first)))
+            });
+            let seen = Value { parts: columns.collect(), quantity: value.quantity };
+            drawn.push(OwnName { name: name.clone(), value: seen });
+            self.names.own.push(OwnName { name: name.clone(), value });
+        }
+        for own in drawn {
+            if let Some(known) = self.names.own.iter_mut().find(|known| known.name == own.name) {
+                known.value = own.value;
+            }
+        }
+        (!texts.is_empty()).then_some(parts)
+    }
+
+    /// Fields of the model that formulas set.
+    pub(super) fn shaping(&mut self, spec: &Spec) -> Option<Found> {
+        let settings = self.settings;
+        let mut found = Found::default();
+        let own: Vec<(Vec<String>, &String)> = (0..)
+            .zip(&settings.set)
+            .map(|(i, text): (usize, _)| (vec!["set".to_owned(), i.to_string()], text))
+            .chain(settings.design.iter().flat_map(|parameter| {
+                let keys = move |i: usize| vec!["design".into(), parameter.name.clone(), "sets".into(), i.to_string()];
+                (0..).zip(&parameter.sets).map(move |(i, text)| (keys(i), text))
+            }))
+            .collect();
+        for (keys, text) in own {
+            let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+            let Some(at) = text.find('=').filter(|&at| !text[at + 1..].starts_with('=')) else {
+                let hint = "write it \"geom.shin.size[1] = shank/2\"";
+                self.refuse(&keys, "this sets no field", Some(hint.into()));
+                continue;
+            };
+            let field = match text[..at].trim().parse::<FieldPath>() {
+                Ok(field) => field,
+                Err(error) => {
+                    tell_at(self.section, &keys, &(0..at), &error.to_string(), None);
+                    self.sound = false;
+                    continue;
+                }
+            };
+            if let Err(error) = spec.field(&field) {
+                tell_at(self.section, &keys, &(0..at), &error.to_string(), None);
+                self.sound = false;
+                continue;
+            }
+            let Some(value) = self.read(&keys, text, at + 1, Place::Model, 1) else { continue };
+            let [part] = value.parts[..] else {
+                self.refuse(&keys, "a field takes one number", Some("set its components one by one".into()));
+                continue;
+            };
+            let (_, parameters) = self.formulas.inputs(&[part]);
+            found.parameters.extend(parameters);
+            found.fields.push(field);
+            found.parts.push(part);
+        }
+        found.parameters.sort_unstable();
+        found.parameters.dedup();
+        (!found.fields.is_empty()).then_some(found)
+    }
+}
+
+/// Fields that formulas set.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) parts: Vec<Part>,
+    pub(super) fields: Vec<FieldPath>,
+    pub(super) parameters: Vec<usize>,
+}

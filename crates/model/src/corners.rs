@@ -1,0 +1,87 @@
+//! Designs at the corners of their limits, compiled before anything is trained.
+
+use hwasp_core::Stream;
+use rand::{RngExt, SeedableRng};
+
+use crate::columns::Column;
+use crate::robot::Robot;
+
+/// Parameters of which every corner is tried; of more, as many corners by chance.
+const MOST: usize = 6;
+/// Designs inside of the limits that are tried, too.
+const INSIDE: usize = 8;
+/// Numbers for what is drawn: the least, the middle, the most.
+const DRAWS: [f64; 3] = [0.0, 0.5, 1.0 - f64::EPSILON];
+
+/// Compiles the model for designs at the corners and inside of the limits.
+///
+/// # Errors
+/// The first design that the engine does not take, with what it says.
+pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
+    let Some(shaping) = &robot.shaping else { return Ok(()) };
+    let space = robot.law.design();
+    let mut making = robot.making().map_err(|error| error.to_string())?;
+    let mut chance = Stream::seed_from_u64(0);
+    let count = shaping.parameters.len();
+    let corners = 1_usize << count.min(MOST);
+    let names = space.names();
+    let mut tape = shaping.formula.program.tape::<f64>(1);
+    let mut out = vec![0.0; shaping.fields.len()];
+    for number in 0..corners + INSIDE {
+        let mut design: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
+        for (k, &i) in shaping.parameters.iter().enumerate() {
+            let (low, high) = space.bounds(i);
+            design[i] = if number >= corners {
+                low + (high - low) * chance.random::<f64>()
+            } else if k < MOST {
+                if number >> k & 1 == 1 { high } else { low }
+            } else if chance.random::<bool>() {
+                high
+            } else {
+                low
+            };
+        }
+        let columns = columns(robot, &design, DRAWS[number % DRAWS.len()]);
+        shaping.formula.program.bind(&design, &mut tape);
+        shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
+        let at = || {
+            let told = shaping.parameters.iter().map(|&i| format!("{} = {:.4}", names[i], design[i]));
+            told.collect::<Vec<_>>().join(", ")
+        };
+        let refused = |what: &dyn std::fmt::Display| {
+            if count == 0 {
+                format!("the model cannot be made: {what}")
+            } else {
+                format!("the model cannot be made with {}: {what}", at())
+            }
+        };
+        for (field, &value) in shaping.fields.iter().zip(&out) {
+            making.set(field, value).map_err(|error| refused(&error))?;
+        }
+        making.compile().map_err(|error| refused(&error))?;
+    }
+    Ok(())
+}
+
+/// The columns that a model is made from, with `draw` for everything that is drawn.
+pub(crate) fn columns(robot: &Robot, design: &[f64], draw: f64) -> Vec<f64> {
+    let mut values: Vec<f64> = robot
+        .columns
+        .iter()
+        .map(|column| match column {
+            Column::Draw(..) => draw,
+            Column::Progress => 1.0,
+            _ => 0.0,
+        })
+        .collect();
+    if let Some((formula, columns)) = &robot.random {
+        let mut tape = formula.program.tape::<f64>(1);
+        let mut out = vec![0.0; columns.len()];
+        formula.program.bind(design, &mut tape);
+        formula.program.forward(&values, 1, 1, &mut tape, &mut out, 1);
+        for (&column, &value) in columns.iter().zip(&out) {
+            values[column] = value;
+        }
+    }
+    values
+}

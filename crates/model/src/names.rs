@@ -1,0 +1,454 @@
+//! What names in formulas stand for.
+
+use hwasp_core::Dimension;
+use hwasp_expr::{Distribution, Exponents, Formulas, NameError, Part, Path, Quantity, Scope, Symbol, Value};
+
+use crate::anatomy::Anatomy;
+use crate::columns::{Column, Columns, Reading, Stage};
+
+/// First words of names, which nothing of one's own is called.
+pub(crate) const RESERVED: [&str; 21] = [
+    "joint", "body", "geom", "site", "tendon", "actuator", "sensor", "contact", "com", "energy", "command", "effort",
+    "time", "step", "dt", "progress", "qpos", "qvel", "pi", "random", "option",
+];
+
+/// The place of an experiment that a formula is in, which decides what it may read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// A name for a formula: whoever uses it is asked.
+    Define,
+    /// A quantity of the episode, or a field of the model: there is no state yet.
+    Model,
+    /// Where an episode starts.
+    Start,
+    /// Observation, reward, ends, success.
+    Step,
+    /// Forces on bodies: before the step.
+    Force,
+    /// The law.
+    Law,
+}
+
+impl Place {
+    fn stage(self) -> Option<Stage> {
+        match self {
+            Self::Model => Some(Stage::Random),
+            Self::Start => Some(Stage::Start),
+            Self::Step => Some(Stage::Step),
+            Self::Force => Some(Stage::Force),
+            Self::Define | Self::Law => None,
+        }
+    }
+
+    /// Why a column cannot be read here; none where it can.
+    pub(crate) fn refuses(self, column: Column) -> Option<&'static str> {
+        match (self, column) {
+            (Self::Define, _) | (_, Column::Random(_) | Column::Progress) => None,
+            (Self::Model, Column::Engine(_) | Column::Memory(_)) => {
+                Some("the model is made before there is a state to read")
+            }
+            (Self::Model | Self::Start, Column::Command(_) | Column::Effort(_)) => {
+                Some("an episode starts before anything is commanded")
+            }
+            (Self::Model, Column::Time | Column::Count) => Some("the model is made before the time begins"),
+            (Self::Start, Column::Memory(_)) => Some("there is no step before the start"),
+            (Self::Law | Self::Force, Column::Effort(_)) => Some("the effort is what comes of it"),
+            (Self::Force, Column::Command(_)) => Some("forces act whatever is commanded"),
+            (place, Column::Draw(stage, _)) if place.stage() != Some(stage) => {
+                Some("what is drawn there is another draw")
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A name of one's own.
+#[derive(Clone, Debug)]
+pub(crate) struct OwnName {
+    pub(crate) name: String,
+    pub(crate) value: Value,
+}
+
+/// Names, and the columns that they need.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    pub(crate) anatomy: Anatomy,
+    pub(crate) columns: Columns,
+    /// Commands, in order, with what they measure.
+    pub(crate) commands: Vec<(String, Quantity)>,
+    /// Efforts, in order.
+    pub(crate) efforts: Vec<(String, Quantity)>,
+    /// Design parameters, definitions, random quantities.
+    pub(crate) own: Vec<OwnName>,
+    /// What is remembered from step to step.
+    pub(crate) memory: Vec<Part>,
+    /// Time of an environment step, s.
+    pub(crate) time_step: f64,
+}
+
+/// The names as one place sees them.
+pub(crate) struct InPlace<'n> {
+    pub(crate) names: &'n mut Names,
+    pub(crate) place: Place,
+    /// Components of what the formula is for.
+    pub(crate) width: usize,
+}
+
+impl Scope for InPlace<'_> {
+    fn name(&mut self, formulas: &mut Formulas, path: &Path) -> Result<Symbol, NameError> {
+        let names = &mut *self.names;
+        if let Some(own) = names.own.iter().find(|own| own.name == path.first()) {
+            return Ok(Symbol::new(own.value.parts.clone(), own.value.quantity, 1));
+        }
+        let (columns, quantity, used) = names.find(path)?;
+        let parts = match columns {
+            Found::Columns(columns) => columns
+                .into_iter()
+                .map(|(column, name)| formulas.column(names.columns.place(column, || name)))
+                .collect(),
+            Found::Number(value) => vec![formulas.constant(value)],
+        };
+        Ok(Symbol::new(parts, quantity, used))
+    }
+
+    fn previous(&mut self, formulas: &mut Formulas, value: &Value) -> Result<Vec<Part>, String> {
+        if matches!(self.place, Place::Model | Place::Start) {
+            return Err("there is no step before the start of an episode".to_owned());
+        }
+        let parts = value.parts.iter().map(|&part| {
+            let memory = &mut self.names.memory;
+            let at = memory.iter().position(|&kept| kept == part).unwrap_or(memory.len());
+            if at == memory.len() {
+                memory.push(part);
+            }
+            formulas.column(self.names.columns.place(Column::Memory(at), || format!("previous {at}")))
+        });
+        Ok(parts.collect())
+    }
+
+    fn draw(&mut self, formulas: &mut Formulas, from: Distribution, count: usize) -> Result<Vec<Part>, String> {
+        let Some(stage) = self.place.stage() else {
+            return Err("a law and a definition draw nothing: name the draw in [task.random]".to_owned());
+        };
+        Ok((0..count).map(|_| formulas.column(self.names.columns.draw(stage, from))).collect())
+    }
+
+    fn width(&self) -> usize {
+        self.width
+    }
+
+    fn strict(&self) -> bool {
+        self.place == Place::Law
+    }
+}
+
+enum Found {
+    Columns(Vec<(Column, String)>),
+    Number(f64),
+}
+
+/// What the attribute of an element reads.
+type Attribute = fn(&Anatomy, usize) -> (Vec<Reading>, Quantity);
+
+const LENGTH: Quantity = Quantity::Known(Exponents::new([0, 1, 0, 0, 0]));
+const SPEED: Quantity = Quantity::Known(Exponents::new([0, 1, -1, 0, 0]));
+const TURNING: Quantity = Quantity::Known(Exponents::new([0, 0, -1, 0, 1]));
+
+fn three(reading: impl Fn(usize) -> Reading) -> Vec<Reading> {
+    (0..3).map(reading).collect()
+}
+
+fn four(reading: impl Fn(usize) -> Reading) -> Vec<Reading> {
+    (0..4).map(reading).collect()
+}
+
+/// The attributes of a kind of element, with what each means.
+pub(crate) fn attributes(kind: &str) -> &'static [(&'static str, Attribute, &'static str)] {
+    match kind {
+        "joint" => &[
+            (
+                "pos",
+                |a, i| (a.joints[i].qpos.clone().map(Reading::Position).collect(), a.joints[i].position()),
+                "position: rad or m; a quaternion of a ball; place and quaternion of a free joint",
+            ),
+            (
+                "vel",
+                |a, i| (a.joints[i].dof.clone().map(Reading::Velocity).collect(), a.joints[i].velocity()),
+                "velocity: rad/s or m/s",
+            ),
+            (
+                "acc",
+                |a, i| (a.joints[i].dof.clone().map(Reading::Acceleration).collect(), Quantity::Unknown),
+                "acceleration in the last simulation step",
+            ),
+            (
+                "force",
+                |a, i| {
+                    (
+                        a.joints[i].dof.clone().map(Reading::ActuatorForceOn).collect(),
+                        Quantity::of(a.joints[i].effort()),
+                    )
+                },
+                "force of the actuators on it",
+            ),
+            (
+                "constraint",
+                |a, i| {
+                    let forces = a.joints[i].dof.clone().map(Reading::ConstraintForceOn).collect();
+                    (forces, Quantity::of(a.joints[i].effort()))
+                },
+                "force of contacts and limits on it",
+            ),
+        ],
+        "body" => &[
+            ("pos", |_, i| (three(|k| Reading::BodyPosition(i, k)), LENGTH), "place of its frame in the world, m"),
+            (
+                "quat",
+                |_, i| (four(|k| Reading::BodyOrientation(i, k)), Quantity::Number),
+                "orientation, a quaternion (w, x, y, z)",
+            ),
+            (
+                "vel",
+                |_, i| (three(|k| Reading::BodyVelocity(i, k)), SPEED),
+                "velocity of its frame's origin in the world, m/s",
+            ),
+            (
+                "angvel",
+                |_, i| (three(|k| Reading::BodyAngularVelocity(i, k)), TURNING),
+                "angular velocity in the world, rad/s",
+            ),
+            ("com", |_, i| (three(|k| Reading::BodyCentre(i, k)), LENGTH), "place of its centre of mass, m"),
+            (
+                "force",
+                |_, i| ((0..6).map(|k| Reading::BodyForce(i, k)).collect(), Quantity::Unknown),
+                "torque and force on it from outside (`cfrc_ext`), N·m and N",
+            ),
+        ],
+        "geom" => &[
+            ("pos", |_, i| (three(|k| Reading::GeomPosition(i, k)), LENGTH), "place of its centre in the world, m"),
+            ("quat", |_, i| (four(|k| Reading::GeomOrientation(i, k)), Quantity::Number), "orientation, a quaternion"),
+        ],
+        "site" => &[
+            ("pos", |_, i| (three(|k| Reading::SitePosition(i, k)), LENGTH), "place in the world, m"),
+            ("quat", |_, i| (four(|k| Reading::SiteOrientation(i, k)), Quantity::Number), "orientation, a quaternion"),
+        ],
+        "tendon" => &[
+            ("length", |_, i| (vec![Reading::TendonLength(i)], LENGTH), "length, m"),
+            ("vel", |_, i| (vec![Reading::TendonVelocity(i)], SPEED), "rate of the length, m/s"),
+        ],
+        "actuator" => &[
+            ("force", |_, i| (vec![Reading::ActuatorForce(i)], Quantity::Unknown), "force or torque of it"),
+            ("length", |_, i| (vec![Reading::ActuatorLength(i)], Quantity::Unknown), "length of its transmission"),
+            ("vel", |_, i| (vec![Reading::ActuatorVelocity(i)], Quantity::Unknown), "rate of that length"),
+            ("control", |_, i| (vec![Reading::Control(i)], Quantity::Unknown), "what it is told"),
+            (
+                "act",
+                |a, i| (a.actuators[i].activation.into_iter().map(Reading::Activation).collect(), Quantity::Unknown),
+                "its activation, where it has one",
+            ),
+        ],
+        _ => &[],
+    }
+}
+
+impl Names {
+    fn elements(&self, kind: &str) -> Vec<String> {
+        let anatomy = &self.anatomy;
+        match kind {
+            "joint" => anatomy.joints.iter().map(|joint| joint.name.clone()).collect(),
+            "body" => anatomy.bodies.clone(),
+            "geom" => anatomy.geoms.clone(),
+            "site" => anatomy.sites.clone(),
+            "tendon" => anatomy.tendons.clone(),
+            "actuator" => anatomy.actuators.iter().map(|actuator| actuator.name.clone()).collect(),
+            "sensor" => anatomy.sensors.iter().map(|sensor| sensor.name.clone()).collect(),
+            "command" => self.commands.iter().map(|(name, _)| name.clone()).collect(),
+            "effort" => self.efforts.iter().map(|(name, _)| name.clone()).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What a name of the model stands for: columns with their names, what they measure, and the parts of the path it takes.
+    fn find(&self, path: &Path) -> Result<(Found, Quantity, usize), NameError> {
+        let kind = path.first();
+        match kind {
+            "time" => Ok((column(Column::Time, "time"), Quantity::of(Dimension::Time), 1)),
+            "step" => Ok((column(Column::Count, "step"), Quantity::Number, 1)),
+            "progress" => Ok((column(Column::Progress, "progress"), Quantity::Number, 1)),
+            "dt" => Ok((Found::Number(self.time_step), Quantity::of(Dimension::Time), 1)),
+            "qpos" => {
+                let all = self.anatomy.joints.iter().flat_map(|joint| joint.qpos.clone()).map(Reading::Position);
+                Ok((engine(all.collect(), "qpos"), Quantity::Unknown, 1))
+            }
+            "qvel" => {
+                let all = self.anatomy.joints.iter().flat_map(|joint| joint.dof.clone()).map(Reading::Velocity);
+                Ok((engine(all.collect(), "qvel"), Quantity::Unknown, 1))
+            }
+            "com" => match path.word(1) {
+                Some("pos") => Ok((engine(three(Reading::Centre), "com.pos"), LENGTH, 2)),
+                Some("vel") => Ok((engine(three(Reading::CentreVelocity), "com.vel"), SPEED, 2)),
+                _ => Err(attribute_missing(path, 1, &["pos", "vel"])),
+            },
+            "energy" => match path.word(1) {
+                Some("kinetic") => {
+                    Ok((engine(vec![Reading::Kinetic], "energy.kinetic"), Quantity::of(Dimension::Torque), 2))
+                }
+                Some("potential") => {
+                    Ok((engine(vec![Reading::Potential], "energy.potential"), Quantity::of(Dimension::Torque), 2))
+                }
+                _ => Err(attribute_missing(path, 1, &["kinetic", "potential"])),
+            },
+            "command" | "effort" => self.port(path, kind),
+            "sensor" => self.sensor(path),
+            "contact" => self.contact(path),
+            "joint" | "body" | "geom" | "site" | "tendon" | "actuator" => self.element(path, kind),
+            _ => {
+                let own = self.own.iter().map(|own| own.name.clone());
+                let words = RESERVED.iter().filter(|word| !matches!(**word, "random" | "option"));
+                Err(NameError::unknown(own.chain(words.map(|word| (*word).to_owned()))))
+            }
+        }
+    }
+
+    fn element(&self, path: &Path, kind: &str) -> Result<(Found, Quantity, usize), NameError> {
+        let elements = self.elements(kind);
+        let chosen = chosen(path, 1, &elements)?;
+        let attributes = attributes(kind);
+        let names: Vec<&str> = attributes.iter().map(|(name, ..)| *name).collect();
+        let found = path.word(2).and_then(|word| attributes.iter().find(|(name, ..)| *name == word));
+        let Some((attribute, read, _)) = found else { return Err(attribute_missing(path, 2, &names)) };
+        let mut columns = Vec::new();
+        let mut quantity: Option<Quantity> = None;
+        for &index in &chosen {
+            let (readings, of) = read(&self.anatomy, index);
+            quantity = Some(match quantity {
+                None => of,
+                Some(before) if before == of => of,
+                Some(_) => Quantity::Unknown,
+            });
+            let name = if elements[index].is_empty() { format!("#{index}") } else { elements[index].clone() };
+            columns.extend(labelled(readings, &format!("{kind}.{name}.{attribute}")));
+        }
+        if columns.is_empty() {
+            let message = format!("`{path}` is empty: none of them has one");
+            return Err(NameError::because(2, message, "see `hwasp check` for what the model has"));
+        }
+        Ok((Found::Columns(columns), quantity.unwrap_or(Quantity::Unknown), 3))
+    }
+
+    fn port(&self, path: &Path, kind: &str) -> Result<(Found, Quantity, usize), NameError> {
+        let ports = if kind == "command" { &self.commands } else { &self.efforts };
+        let column = |i: usize| if kind == "command" { Column::Command(i) } else { Column::Effort(i) };
+        if ports.is_empty() {
+            return Err(NameError::because(
+                0,
+                format!("there is no {kind} here"),
+                "see [task.law] and the model's actuators",
+            ));
+        }
+        let named = |i: usize| (column(i), format!("{kind}.{}", ports[i].0));
+        if path.len() == 1 {
+            let alike = ports.iter().all(|(_, quantity)| *quantity == ports[0].1);
+            let quantity = if alike { ports[0].1 } else { Quantity::Unknown };
+            return Ok((Found::Columns((0..ports.len()).map(named).collect()), quantity, 1));
+        }
+        let names: Vec<String> = ports.iter().map(|(name, _)| name.clone()).collect();
+        // `effort.joint.knee` has a name with a dot.
+        let dotted = (2..=path.len().min(3)).rev().find_map(|parts| {
+            let words: Option<Vec<&str>> = (1..parts).map(|at| path.word(at)).collect();
+            let name = words?.join(".");
+            names.iter().position(|known| *known == name).map(|i| (i, parts))
+        });
+        if let Some((i, parts)) = dotted {
+            return Ok((Found::Columns(vec![named(i)]), ports[i].1, parts));
+        }
+        let chosen = chosen(path, 1, &names)?;
+        let quantity = if chosen.len() == 1 { ports[chosen[0]].1 } else { Quantity::Unknown };
+        Ok((Found::Columns(chosen.into_iter().map(named).collect()), quantity, 2))
+    }
+
+    fn sensor(&self, path: &Path) -> Result<(Found, Quantity, usize), NameError> {
+        let elements = self.elements("sensor");
+        let chosen = chosen(path, 1, &elements)?;
+        let sensors = &self.anatomy.sensors;
+        let columns = chosen.iter().flat_map(|&i| {
+            labelled(sensors[i].data.clone().map(Reading::Sensor).collect(), &format!("sensor.{}", sensors[i].name))
+        });
+        let quantity = if chosen.len() == 1 { sensors[chosen[0]].quantity } else { Quantity::Unknown };
+        Ok((Found::Columns(columns.collect()), quantity, 2))
+    }
+
+    /// `contact.foot.floor` (0 or 1), `contact.foot.floor.force` (N), `contact.foot` (with anything).
+    fn contact(&self, path: &Path) -> Result<(Found, Quantity, usize), NameError> {
+        let geoms = &self.anatomy.geoms;
+        let one = |at: usize| -> Result<usize, NameError> {
+            match chosen(path, at, geoms)?[..] {
+                [only] => Ok(only),
+                _ => Err(NameError::because(at, "a contact is between two geoms", "name one of them")),
+            }
+        };
+        let first = one(1)?;
+        if path.len() == 2 {
+            return Ok((engine(vec![Reading::TouchAny(first)], &path.to_string()), Quantity::Number, 2));
+        }
+        let second = one(2)?;
+        if path.word(3) == Some("force") {
+            let reading = Reading::TouchForce(first, second);
+            return Ok((engine(vec![reading], &path.to_string()), Quantity::of(Dimension::Force), 4));
+        }
+        Ok((engine(vec![Reading::Touch(first, second)], &path.to_string()), Quantity::Number, 3))
+    }
+}
+
+fn column(column: Column, name: &str) -> Found {
+    Found::Columns(vec![(column, name.to_owned())])
+}
+
+fn engine(readings: Vec<Reading>, name: &str) -> Found {
+    Found::Columns(labelled(readings, name))
+}
+
+/// Columns with names, counted where there are several.
+fn labelled(readings: Vec<Reading>, name: &str) -> Vec<(Column, String)> {
+    let several = readings.len() > 1;
+    let label =
+        |(i, reading)| (Column::Engine(reading), if several { format!("{name}[{i}]") } else { name.to_owned() });
+    readings.into_iter().enumerate().map(label).collect()
+}
+
+/// The elements that part `at` of a path means: one by its name or number, or all.
+fn chosen(path: &Path, at: usize, elements: &[String]) -> Result<Vec<usize>, NameError> {
+    let kind = path.word(at - 1).unwrap_or_default();
+    let named = || elements.iter().filter(|name| !name.is_empty()).cloned();
+    if elements.is_empty() {
+        return Err(NameError::because(0, format!("the model has no {kind}"), "see `hwasp check` for what it has"));
+    }
+    if let Some(index) = path.index(at) {
+        let last = elements.len() - 1;
+        let message = || format!("there is no {kind} #{index}: they are counted from 0 to {last}");
+        return (index <= last)
+            .then(|| vec![index])
+            .ok_or_else(|| NameError::because(at, message(), "see `hwasp check`"));
+    }
+    match path.word(at) {
+        None => Err(NameError::because(
+            at - 1,
+            format!("`{kind}` names no element"),
+            format!("write {kind}.NAME or {kind}.*"),
+        )),
+        Some("*") => Ok((0..elements.len()).collect()),
+        Some(name) => match elements.iter().position(|known| known == name) {
+            Some(index) => Ok(vec![index]),
+            None => Err(NameError::at(at, named())),
+        },
+    }
+}
+
+/// What is missing behind the start of a name.
+fn attribute_missing(path: &Path, at: usize, known: &[&str]) -> NameError {
+    if path.len() > at {
+        return NameError::at(at, known.iter().copied());
+    }
+    let hint = format!("it has {}", known.iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(", "));
+    NameError::because(at - 1, format!("`{path}` is no value by itself"), hint)
+}

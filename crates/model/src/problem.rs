@@ -1,0 +1,81 @@
+//! The problem `model`: any robot, from a file.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use hwasp_problem::{AnyError, Built, FaultsTold, Mechanism, ModelFile, ModelFormat, Problem, World};
+
+use crate::environment::ModelEnvironments;
+use crate::robot::Robot;
+use crate::settings::ModelSettings;
+
+/// A problem from a model and formulas.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelProblem;
+
+impl Problem for ModelProblem {
+    type Settings = ModelSettings;
+
+    fn name(&self) -> &'static str {
+        "model"
+    }
+
+    fn defaults(&self) -> ModelSettings {
+        ModelSettings::default()
+    }
+
+    fn build(&self, settings: &ModelSettings) -> Result<Built, AnyError> {
+        let Some(robot) = &settings.robot else { return Err(FaultsTold.into()) };
+        let world = |own_law| {
+            let environments = ModelEnvironments { robot: Arc::clone(robot), own_law };
+            World::described(robot.law.clone(), robot.env.clone(), Arc::new(environments))
+        };
+        let mut built = Built::of(world(false), world(false));
+        let fast = world(true);
+        built.stand_in = Some(Arc::new(move |_: &[f64]| Ok(fast.clone())));
+        built.mechanism = Some(Arc::new(Model(Arc::clone(robot))));
+        built.files = Arc::clone(&settings.files);
+        Ok(built)
+    }
+}
+
+/// The model as what is built.
+#[derive(Debug)]
+struct Model(Arc<Robot>);
+
+impl Mechanism for Model {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn formats(&self) -> Vec<ModelFormat> {
+        vec![ModelFormat::Mjcf]
+    }
+
+    /// The model with the design, and the files that it refers to.
+    fn write(&self, format: ModelFormat, design: &[f64]) -> Result<Vec<ModelFile>, AnyError> {
+        if format != ModelFormat::Mjcf {
+            return Err("a model is written as MJCF".into());
+        }
+        let robot = &self.0;
+        let mut making = robot.making()?;
+        if let Some(shaping) = &robot.shaping {
+            let columns = crate::corners::columns(robot, design, 0.5);
+            let mut tape = shaping.formula.program.tape::<f64>(1);
+            let mut out = vec![0.0; shaping.fields.len()];
+            shaping.formula.program.bind(design, &mut tape);
+            shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
+            for (field, &value) in shaping.fields.iter().zip(&out) {
+                making.set(field, value)?;
+            }
+        }
+        let text = making.to_mjcf()?;
+        let main = ModelFile { name: "robot.xml".to_owned(), contents: text.into_bytes() };
+        let assets = robot.files.iter().filter(|(path, _)| {
+            let ending = path.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+            !matches!(ending.as_str(), "xml" | "urdf" | "mjcf")
+        });
+        let assets = assets.map(|(path, bytes)| ModelFile { name: path.to_owned(), contents: bytes.to_vec() });
+        Ok(std::iter::once(main).chain(assets).collect())
+    }
+}

@@ -1,0 +1,152 @@
+//! A robot, compiled: everything that an environment of it needs.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+use hwasp_core::{EnvSpec, Law};
+use hwasp_diff::Program;
+use hwasp_expr::Distribution;
+use hwasp_mujoco::engine::{FieldPath, Files, Simulation, Spec, SpecError};
+use hwasp_problem::AnyError;
+
+use crate::columns::{Column, Reading};
+
+/// What a law's effort acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A generalised force on a degree of freedom.
+    Joint(usize),
+    /// The tension of a tendon.
+    Tendon(usize),
+    /// The control of an actuator.
+    Actuator(usize),
+}
+
+/// A program over all columns, and what it draws before it runs.
+#[derive(Clone, Debug)]
+pub(crate) struct Formula {
+    pub(crate) program: Program,
+    pub(crate) draws: Vec<(Distribution, usize)>,
+}
+
+/// Fields of the model that follow design and random quantities.
+#[derive(Clone, Debug)]
+pub(crate) struct Shaping {
+    pub(crate) formula: Formula,
+    pub(crate) fields: Vec<FieldPath>,
+    /// Design parameters that it reads.
+    pub(crate) parameters: Vec<usize>,
+}
+
+/// Where the outputs of the program after a step lie.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Outputs {
+    pub(crate) observations: usize,
+    pub(crate) terms: usize,
+    pub(crate) ends: bool,
+    pub(crate) success: bool,
+    pub(crate) kinds: usize,
+    pub(crate) memory: usize,
+}
+
+impl Outputs {
+    /// All of them, in order: observations, terms, ends, success, kinds, memory.
+    pub(crate) fn terms_at(&self) -> Range<usize> {
+        self.observations..self.observations + self.terms
+    }
+
+    pub(crate) fn ends_at(&self) -> Option<usize> {
+        self.ends.then_some(self.observations + self.terms)
+    }
+
+    pub(crate) fn success_at(&self) -> Option<usize> {
+        self.success.then_some(self.observations + self.terms + usize::from(self.ends))
+    }
+
+    pub(crate) fn kinds_at(&self) -> Range<usize> {
+        let from = self.observations + self.terms + usize::from(self.ends) + usize::from(self.success);
+        from..from + self.kinds
+    }
+}
+
+/// A robot.
+#[derive(Debug)]
+pub(crate) struct Robot {
+    pub(crate) env: EnvSpec,
+    pub(crate) law: Law,
+    /// The model's path, and its files.
+    pub(crate) main: String,
+    pub(crate) files: Files,
+    pub(crate) additions: Additions,
+    pub(crate) columns: Vec<Column>,
+    /// Columns of the law's states, in its order.
+    pub(crate) states: Vec<usize>,
+    /// Columns of the law's commands and states: for the law at the rate of the physics.
+    pub(crate) random: Option<(Formula, Vec<usize>)>,
+    pub(crate) shaping: Option<Shaping>,
+    /// Targets in positions and velocities.
+    pub(crate) start: Option<(Formula, Vec<Reading>)>,
+    pub(crate) step: Formula,
+    pub(crate) outputs: Outputs,
+    pub(crate) kinds: Vec<Arc<str>>,
+    pub(crate) terms: Vec<String>,
+    /// Bodies that forces act on, with 3 or 6 components.
+    pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
+    /// Times in s: of the observation, of the command.
+    pub(crate) delays: Option<Formula>,
+    pub(crate) targets: Vec<Target>,
+    /// The actuator that each command goes to as it is.
+    pub(crate) direct: Vec<Option<usize>>,
+    pub(crate) keyframe: Option<String>,
+    pub(crate) frame_skip: usize,
+    /// Whether readings have to be computed anew after a step.
+    pub(crate) fresh: bool,
+    /// The columns of every memory, in order.
+    pub(crate) memory: Vec<usize>,
+    /// Compiled as the design begins, to be cloned.
+    pub(crate) simulation: Mutex<Simulation>,
+}
+
+/// What is added to a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Additions {
+    pub(crate) floor: bool,
+    pub(crate) free_base: bool,
+    /// Joint, gear, limits.
+    pub(crate) motors: Vec<(String, f64, [f64; 2])>,
+}
+
+impl Additions {
+    /// The model with them, in the making.
+    pub(crate) fn spec(&self, main: &str, files: &Files) -> Result<Spec, AnyError> {
+        let mut spec = Spec::parse(main, files)?;
+        self.add(&mut spec)?;
+        Ok(spec)
+    }
+
+    /// Adds them to a model.
+    pub(crate) fn add(&self, spec: &mut Spec) -> Result<(), SpecError> {
+        if self.free_base {
+            spec.free_base()?;
+        }
+        if self.floor {
+            spec.add_floor()?;
+        }
+        for (joint, gear, limits) in &self.motors {
+            spec.add_motor(joint, joint, *gear, *limits)?;
+        }
+        Ok(())
+    }
+}
+
+impl Robot {
+    /// Its model in the making.
+    pub(crate) fn making(&self) -> Result<Spec, AnyError> {
+        self.additions.spec(&self.main, &self.files)
+    }
+
+    /// A simulation of it as the design begins.
+    pub(crate) fn simulation(&self) -> Simulation {
+        self.simulation.lock().expect("nothing panics while a simulation is cloned").clone()
+    }
+}

@@ -150,6 +150,9 @@ pub trait Environment: Send {
     /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
     fn set_progress(&mut self, _progress: f64) {}
 
+    /// Told before each start the whole design, SI, for worlds whose model depends on it.
+    fn set_design(&mut self, _design: &[f64]) {}
+
     /// Starts an episode.
     fn reset(&mut self, rng: &mut Stream);
 

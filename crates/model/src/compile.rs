@@ -147,7 +147,8 @@ impl Compiler<'_, '_> {
         let other = if settings.kinds.is_empty() { "all" } else { "other" };
         let env = self.env(&observed, &law);
         let derived = |column: &Column| matches!(column, Column::Engine(reading) if reading.is_derived());
-        let robot = Robot {
+        let mut robot = Robot {
+            plain: false,
             env,
             law,
             main,
@@ -179,6 +180,7 @@ impl Compiler<'_, '_> {
             memory: memory_columns,
             simulation: Mutex::new(simulation),
         };
+        robot.discard_visual();
         match check_corners(&robot) {
             Ok(()) => Some(robot),
             Err(message) => {

@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use hwasp_problem::{AnyError, Built, FaultsTold, Mechanism, ModelFile, ModelFormat, Problem, World};
+use hwasp_problem::{AnyError, Built, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, World};
 
 use crate::environment::ModelEnvironments;
 use crate::robot::Robot;
@@ -22,6 +22,13 @@ impl Problem for ModelProblem {
 
     fn defaults(&self) -> ModelSettings {
         ModelSettings::default()
+    }
+
+    fn presets(&self) -> Vec<Preset> {
+        vec![
+            Preset::new("balanced-arm", include_str!("../../../experiments/balanced-arm.toml"))
+                .with_files(&[("robots/arm.xml", include_str!("../../../experiments/robots/arm.xml"))]),
+        ]
     }
 
     fn build(&self, settings: &ModelSettings) -> Result<Built, AnyError> {
@@ -58,7 +65,7 @@ impl Mechanism for Model {
             return Err("a model is written as MJCF".into());
         }
         let robot = &self.0;
-        let mut making = robot.making()?;
+        let mut making = robot.additions.spec(&robot.main, &robot.files)?;
         if let Some(shaping) = &robot.shaping {
             let columns = crate::corners::columns(robot, design, 0.5);
             let mut tape = shaping.formula.program.tape::<f64>(1);

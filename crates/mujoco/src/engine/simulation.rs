@@ -131,6 +131,11 @@ impl Simulation {
         self.data.qfrc_actuator()
     }
 
+    /// Forces of constraints (contacts, limits, equalities, dry friction) on the degrees of freedom, as computed last: N·m, N.
+    pub fn qfrc_constraint(&self) -> &[f64] {
+        self.data().qfrc_constraint()
+    }
+
     /// Forces of springs, dampers and tendons on the degrees of freedom, as computed last: N·m, N.
     pub fn qfrc_passive(&self) -> &[f64] {
         self.data.qfrc_passive()

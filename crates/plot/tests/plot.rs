@@ -91,6 +91,32 @@ fn runs_that_share_a_label_are_one_line_and_a_band() {
     assert!(has_text(&picture, "alone"));
 }
 
+/// Where two of five seeds had failed, the legend counted three runs as if nobody had asked for more.
+#[test]
+fn a_legend_says_how_many_runs_there_should_be() {
+    let runs: Vec<Curve> = (0..3).map(|i| run("HWasP", 20, f64::from(i))).chain([run("ARS", 20, 5.0)]).collect();
+    let asked = [("HWasP", 5), ("ARS", 2), ("CMA-ES", 5)].map(|(label, runs)| (label.to_owned(), runs)).to_vec();
+    let picture = curves(&runs, &PlotOptions { asked, ..options() }).unwrap().svg;
+    assert!(has_text(&picture, "HWasP (3 of 5 runs)") && has_text(&picture, "ARS (1 of 2 runs)"), "{picture}");
+    assert!(texts(&picture).iter().any(|text| text.contains("no run finished of CMA-ES")), "{:?}", texts(&picture));
+    let whole = svg(&runs);
+    assert!(has_text(&whole, "HWasP (3 runs)") && has_text(&whole, "ARS"), "{:?}", texts(&whole));
+}
+
+/// Two runs had a band that was called a 95 % interval: the range from the one to the other, which holds the truth in half of all
+/// cases.
+#[test]
+fn up_to_three_runs_have_no_band_of_a_bootstrap() {
+    for (runs, polygons) in [(2, 0), (3, 0), (4, 3)] {
+        let curves_of: Vec<Curve> = (0..runs).map(|i| run("HWasP", 60, 20.0 * f64::from(i))).collect();
+        let options = PlotOptions { band: Band::Bootstrap, ..options() };
+        let picture = curves(&curves_of, &options).unwrap().svg;
+        // One in each of two panels, and one in the legend.
+        assert_eq!(count(&picture, "polygon"), polygons, "{runs} runs");
+        assert_eq!(texts(&picture).iter().any(|text| text.contains("bootstrap interval")), polygons > 0, "{runs} runs");
+    }
+}
+
 /// Four runs at heights 0, 1, 2 and 30 over the base: the interquartile mean is 1.5, the mean would be 8.25. The same
 /// picture with a single run at 1.5 beside them shows that both lie on one line.
 #[test]

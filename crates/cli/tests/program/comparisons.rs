@@ -54,6 +54,21 @@ fn nothing_is_certain_from_one_seed_or_episode() {
     }
 }
 
+/// Where all seeds of a method had failed, the page said "nothing else was trained".
+#[test]
+fn a_method_that_failed_altogether_is_on_the_page() {
+    let sandbox = Sandbox::new("compare-one-failed");
+    // The settings of PPO, which CMA-ES does not read, let every update diverge.
+    let line = "compare reach --methods hwasp,cmaes --seeds 2 --env-steps 36000 --threads 2 --set train.evaluation_episodes=5 \
+                --set ppo.learning_rate=1 --set ppo.max_grad_norm=0 --set noise.learning_rate_scale=100 --out both";
+    let output = sandbox.run(line);
+    let table = text(&output.stdout);
+    assert!(table.contains("| hwasp | 0 of 2 |") && table.contains("| cmaes | 2 of 2 |"), "{table}");
+    assert!(sandbox.run("report both").status.success());
+    let html = text(&sandbox.read("both/report.html"));
+    assert!(html.contains("no seed of hwasp finished") && !html.contains("nothing else was trained"), "{html}");
+}
+
 /// A second comparison on the same folder ended both of them with `is in use`.
 #[test]
 fn a_second_comparison_joins_the_first() {

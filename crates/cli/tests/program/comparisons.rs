@@ -54,6 +54,17 @@ fn nothing_is_certain_from_one_seed_or_episode() {
     }
 }
 
+/// Three episodes, none of whose changes had an interval, ended in "To be made precisely first: gear."
+#[test]
+fn no_part_is_named_from_few_episodes() {
+    let sandbox = Sandbox::with_run("precise-by-chance");
+    for (episodes, told) in [(1, "1 episode does not tell which part"), (3, "3 episodes do not tell which part")] {
+        let found = text(&sandbox.run(&format!("tolerances run --episodes {episodes} --out {episodes}")).stdout);
+        assert!(found.contains(told), "{found}");
+        assert!(!found.contains("precisely first") && !found.contains("local optimum"), "{found}");
+    }
+}
+
 /// Where all seeds of a method had failed, the page said "nothing else was trained".
 #[test]
 fn a_method_that_failed_altogether_is_on_the_page() {

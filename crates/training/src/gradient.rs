@@ -175,7 +175,7 @@ impl<'a> Gradient<'a> {
 }
 
 /// The mean discounted and undiscounted returns of a batch's episodes.
-pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
+fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
     let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
     (mean(batch.returns(discount)), mean(batch.returns(1.0)))
 }

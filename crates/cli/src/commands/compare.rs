@@ -65,7 +65,13 @@ pub(super) fn run_grid(
     })?;
     progress.finish();
     let comparison = Comparison::new(&first.experiment(), &outcome, threshold)?;
-    comparison.write(folder, &outcome.finished, &first.plot_options())?;
+    if let Err(unwritten) = comparison.write(folder, &outcome.finished, &first.plot_options()) {
+        // What was found is told even if a disk is full by now.
+        if !quiet {
+            output::print(&format!("{}\n", comparison.markdown()))?;
+        }
+        return Err(unwritten.into());
+    }
     if let (Some(others), false) = (comparison.others(), quiet) {
         output::remark(&others);
     }

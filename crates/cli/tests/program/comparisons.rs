@@ -80,6 +80,20 @@ fn a_method_that_failed_altogether_is_on_the_page() {
     assert!(html.contains("no seed of hwasp finished") && !html.contains("nothing else was trained"), "{html}");
 }
 
+/// A table that could not be written was not printed either, after all trainings.
+#[test]
+fn a_table_that_cannot_be_written_is_printed() {
+    let sandbox = Sandbox::new("compare-unwritable");
+    std::fs::create_dir_all(sandbox.path("both/cells")).unwrap();
+    std::fs::create_dir(sandbox.path("both/table.md")).unwrap();
+    let line = "compare reach --methods hwasp --seeds 1 --env-steps 2400 --set train.evaluation_episodes=5 --out both";
+    let output = sandbox.run(line);
+    let (found, told) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(found.contains("| hwasp | 1 of 1 |") && told.contains("cannot write both/table.md"), "{found}{told}");
+    assert!(sandbox.run(&format!("{line} --quiet")).stdout.is_empty());
+}
+
 /// A second comparison on the same folder ended both of them with `is in use`.
 #[test]
 fn a_second_comparison_joins_the_first() {

@@ -36,6 +36,15 @@ fn nothing_in_names_moves_the_cursor() {
     }
 }
 
+/// Results name files as messages do: a mark that turns the direction of writing went through standard output.
+#[test]
+fn nothing_in_results_turns_the_writing() {
+    let sandbox = Sandbox::new("printable-results");
+    let (code, stdout, stderr) = run(&sandbox, &["graph", "reach", "--out", "a\u{202e}b.svg"]);
+    assert_eq!((code, &*stdout, &*stderr), (Some(0), "a\u{fffd}b.svg\n", ""));
+    assert!(sandbox.path("a\u{202e}b.svg").is_file());
+}
+
 /// Errors of the command line stayed plain under `--log-format json`, so that a script could read all messages but these.
 #[test]
 fn errors_of_the_command_line_are_json_too() {

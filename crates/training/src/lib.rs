@@ -23,12 +23,13 @@ pub mod stats;
 mod train;
 mod worker;
 
-pub use assemble::{AssembleError, Assembly, Piece, total_name};
+pub use assemble::{AssembleError, Assembly, Piece};
 pub use checkpoint::Checkpoint;
 pub use collect::Collector;
 pub use error::TrainError;
 pub use evaluate::{evaluate, evaluate_by, evaluate_in, evaluate_native, evaluate_native_by, held_out, sampler};
 pub use evaluation::{EvaluateError, Evaluation, MeanInterval, SuccessRate};
+pub use hwasp_experiment::total_name;
 pub use hwasp_problem::World;
 pub use learned::TRAILING;
 pub use metrics::MetricsRow;

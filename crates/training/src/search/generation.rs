@@ -68,7 +68,9 @@ impl Generation<'_> {
         if let Some(error) = error {
             return Err(error);
         }
-        if state.slots.iter().any(|slot| !matches!(slot, Slot::Scored(_))) {
+        if let Some(open) = state.slots.iter().position(|slot| !matches!(slot, Slot::Scored(_))) {
+            let count = self.candidates.len();
+            assert!(stopped(), "candidate {open} of {count} was not scored, and nobody asked the search to stop");
             observer.on(Event::Checkpoint(&state.checkpoint(clock)?))?;
             let budget = spec.train.env_steps;
             return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });

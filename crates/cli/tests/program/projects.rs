@@ -64,6 +64,27 @@ fn nothing_is_left_open_in_its_files() {
     }
 }
 
+/// The tests of a project named the lamp throughout, and had to be written anew at the first change; and the law said nothing of
+/// branches, for which the compiler's advice leads nowhere (`new_problem.rs` tries what it says now).
+#[test]
+fn what_a_project_is_changed_by_is_said_in_it() {
+    let sandbox = Sandbox::new("init-changes");
+    for template in ["plant", "mjcf"] {
+        assert!(sandbox.run(&format!("init --template {template} {template} --path {}", root())).status.success());
+        let read = |file: &str| String::from_utf8(sandbox.read(&format!("{template}/src/{file}"))).unwrap();
+        let tests = read("tests.rs");
+        let code = tests.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let naming: Vec<&str> = code.filter(|line| line.to_lowercase().contains("lamp")).collect();
+        assert_eq!(naming, ["use crate::Lamp as Own;"], "{template}");
+        let law = read("spring.rs");
+        for said in
+            ["it must not branch on values", "the compiler's advice, `T: PartialOrd`, leads", "| instead of | write |"]
+        {
+            assert!(law.contains(said), "{template}: {said}");
+        }
+    }
+}
+
 /// Addresses on the network stood in manifests at which this program never was.
 #[test]
 fn no_manifest_has_an_address_that_nobody_checked() {

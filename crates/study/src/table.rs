@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use hwasp_runs::text::{self, grouped};
+use hwasp_training::STILL;
 use hwasp_training::stats::{Interval, LEAST_VALUES};
 
 use crate::comparison::Comparison;
@@ -40,6 +41,10 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
         methods.iter().flat_map(|m| m.missing.iter().map(|seed| seed_line(&m.label, &seed.to_string()))).collect();
     if !missing.is_empty() {
         let _ = write!(text, "\nSeeds that did not finish, which are in none of the figures:\n\n{}", missing.concat());
+    }
+    let still: String = methods.iter().filter_map(|m| Some(seed_line(&m.label, &m.unchanged()?))).collect();
+    if !still.is_empty() {
+        let _ = write!(text, "\nTrainings that changed nothing: {STILL}.\n\n{still}");
     }
     if let Some(others) = comparison.others() {
         let _ = write!(text, "\n{}\n", text::markdown(&others));
@@ -93,16 +98,16 @@ fn row(m: &MethodFigures, groups: &[&str]) -> String {
     text
 }
 
-/// What is not known of methods with few seeds, and the seeds themselves.
-fn few_seeds(methods: &[MethodFigures]) -> String {
-    let few = methods.iter().filter(|m| (1..LEAST_VALUES).contains(&m.seeds));
-    let line = |m: &MethodFigures| {
-        let values: Vec<String> = m.evaluations.iter().map(|value| format!("{value:.1}")).collect();
 /// A line about a seed. Labels are typed, and reasons may come from anywhere.
 fn seed_line(label: &str, seed: &str) -> String {
     format!("- {}, {}\n", text::markdown(label), text::markdown(seed))
 }
 
+/// What is not known of methods with few seeds, and the seeds themselves.
+fn few_seeds(methods: &[MethodFigures]) -> String {
+    let few = methods.iter().filter(|m| (1..LEAST_VALUES).contains(&m.seeds));
+    let line = |m: &MethodFigures| {
+        let values: Vec<String> = m.evaluations.iter().map(|value| format!("{value:.1}")).collect();
         format!("- {}: {}\n", text::markdown(&m.label), values.join(", "))
     };
     let lines: String = few.map(line).collect();

@@ -35,5 +35,5 @@ pub use learned::TRAILING;
 pub use metrics::MetricsRow;
 pub use observer::{Event, FailedIteration, Observer, ObserverError};
 pub use paired::{Change, Reference};
-pub use train::{Trained, beginning, params_at, repeat, train, train_by, train_from};
+pub use train::{STILL, Trained, beginning, moved, params_at, repeat, train, train_by, train_from};
 pub use worker::{LocalCollector, Worker};

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hwasp_core::Threads;
 use hwasp_runs::RunError;
 use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome};
+use hwasp_training::STILL;
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
@@ -71,6 +72,9 @@ pub(super) fn run_grid(
             output::print(&format!("{}\n", comparison.markdown()))?;
         }
         return Err(unwritten.into());
+    }
+    for (method, seeds) in comparison.methods.iter().filter_map(|method| Some((&method.label, method.unchanged()?))) {
+        tracing::warn!("{method}, {seeds}: the training changed nothing: {STILL}");
     }
     if let (Some(others), false) = (comparison.others(), quiet) {
         output::remark(&others);

@@ -13,7 +13,7 @@ use hwasp_core::{
     CommandPort, DesignGroup, DesignSpace, Dimension, EnvSpec, Environment, Hardware, Initial, Law, Plant, Port, Ports,
     Robot, Stream, Task, check_env,
 };
-use hwasp_diff::{GradCheckSettings, Scalar, gradcheck};
+use hwasp_diff::{GradCheckSettings, Program, Scalar, gradcheck};
 use hwasp_problem::{AnyError, Built, Problem, Role, Words};
 use hwasp_settings::{Fields, Settings};
 use rand::RngExt;
@@ -89,6 +89,55 @@ impl Hardware for Drum {
     }
 }
 
+/// A law that branched on a value got the compiler's advice, `T: PartialOrd`, which leads nowhere. The template of `hwasp init` says
+/// what to write instead; here each of its rows is a law.
+struct Advice;
+
+const FRICTION: f64 = 0.3;
+const LIMIT: f64 = 0.5;
+const STOP: f64 = 100.0;
+
+impl Advice {
+    fn rows<T: Scalar>(force: T, motor: T, speed: T, angle: T, [here, there]: [T; 2]) -> [T; 5] {
+        [
+            force.max(T::constant(0.0)),
+            motor.clamp(-5.0, 5.0),
+            -(speed * 50.0).tanh() * FRICTION,
+            -(angle - LIMIT).max(T::constant(0.0)) * STOP,
+            here + ((angle - LIMIT) * 50.0).sigmoid() * (there - here),
+        ]
+    }
+
+    fn is_right() {
+        let template = include_str!("../../../templates/plant/src/spring.rs");
+        let (_, rows) = template.split_once("    /// |---|---|\n").unwrap();
+        let rows: Vec<&str> = rows.lines().map_while(|row| row.trim().strip_prefix("/// |")).collect();
+        assert_eq!(rows.len(), 5, "{rows:?}");
+        for row in rows {
+            let code = row.split('`').rev().nth(1).unwrap();
+            assert!(
+                include_str!("new_problem.rs").contains(&format!("            {code},\n")),
+                "not tried here: {code}"
+            );
+        }
+        // Force, motor, speed, angle, the formula below the limit and the one above: on both sides of every limit.
+        let names = ["force", "motor", "speed", "angle", "here", "there"];
+        let program = Program::trace(&[] as &[&str], &names, |_, c| {
+            let rows = Self::rows(c[0], c[1], c[2], c[3], [c[4], c[5]]);
+            rows.into_iter().enumerate().map(|(i, row)| (format!("row {i}"), row)).collect()
+        });
+        for (at, expected) in [
+            ([-2.0, -9.0, -1.0, 0.2, 3.0, 7.0], [0.0, -5.0, FRICTION, 0.0, 3.0]),
+            ([2.0, 4.0, 1.0, 0.8, 3.0, 7.0], [2.0, 4.0, -FRICTION, -0.3 * STOP, 7.0]),
+        ] {
+            let [force, motor, speed, angle, here, there] = at;
+            let found = Self::rows(force, motor, speed, angle, [here, there]);
+            assert!(found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-5), "{found:?} is not {expected:?}");
+            gradcheck(&program, &[], &at, &GradCheckSettings::default()).unwrap();
+        }
+    }
+}
+
 #[derive(Clone, Debug, Default)]
 struct Sled {
     place: f64,
@@ -156,6 +205,7 @@ fn main() -> ExitCode {
     if std::env::var_os(PROGRAM).is_some() {
         return hwasp_cli::run(&hwasp_builtin::catalogue().with(Winch).unwrap());
     }
+    Advice::is_right();
     let built = Winch.build(&Winch.defaults()).unwrap();
     gradcheck(built.training.law.program(), &[0.1], &[2.0, 0.3], &GradCheckSettings::default()).unwrap();
     check_env(&*built.training.make, &built.training.law, false).unwrap();

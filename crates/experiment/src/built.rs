@@ -12,6 +12,8 @@ const COLUMNS: [&str; 8] =
     ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
 /// The longest name of a design group, bytes.
 const LONGEST_NAME: usize = 58;
+/// The most groups of a design: each has a column in learning curves.
+pub const MOST_GROUPS: usize = 64;
 
 /// Builds a problem and checks what experiments rely on.
 pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Result<Built, AnyError> {
@@ -24,10 +26,29 @@ pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Res
     if !(1..=MOST_STEPS).contains(&env.horizon) {
         return Err(format!("its horizon is {} steps, not between 1 and {MOST_STEPS}", env.horizon).into());
     }
+    if groups.len() > MOST_GROUPS {
+        let found = groups.len();
+        return Err(format!("its design has {found} groups, and learning curves have columns for {MOST_GROUPS}").into());
+    }
     for group in groups {
         check_group(&group.name)?;
     }
+    let columns: Vec<String> = groups.iter().map(|group| total_name(&group.name, group.count)).collect();
+    for (i, column) in columns.iter().enumerate() {
+        if let Some(other) = columns[..i].iter().position(|other| other == column) {
+            let (one, other) = (&groups[other].name, &groups[i].name);
+            return Err(format!(
+                "the design groups `{one}` and `{other}` would both be the column `{column}` of learning curves: rename one"
+            )
+            .into());
+        }
+    }
     Ok(built)
+}
+
+/// The column of a design group in learning curves: its total; a group of one is its own.
+pub fn total_name(group: &str, count: usize) -> String {
+    if count == 1 { group.to_owned() } else { format!("{group}_total") }
 }
 
 /// Whether a design group can name a column of a learning curve.

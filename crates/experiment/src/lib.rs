@@ -23,7 +23,7 @@ mod search;
 mod task;
 mod train;
 
-pub use built::MOST_STEPS;
+pub use built::{MOST_GROUPS, MOST_STEPS, total_name};
 pub use catalogue::{Catalogue, CatalogueError};
 pub use controller::{ActivationKind, ControllerSettings};
 pub use design::DesignSettings;

@@ -67,6 +67,12 @@ fn trpo_discounts_as_ppo_does_unless_it_is_told_otherwise() {
     );
     let told = spec(&["trpo.discount = 0.95", "baseline.minibatch_rows = 50"]);
     assert_eq!((told.discount(), ppo(&told).discount, told.baseline.mlp.minibatch_rows), (0.95, 0.9, 50));
+    let of_ppo = ["ppo.learning_rate_final = 0.1", "ppo.max_grad_norm = 7"];
+    let decay = |spec: &Experiment| (spec.baseline.mlp.learning_rate_final, spec.baseline.mlp.max_grad_norm);
+    assert_eq!(decay(&spec(&of_ppo)), (1.0, Some(0.5)));
+    // Under PPO they are the baseline's, too, where it has none of its own.
+    let under_ppo = of_ppo.iter().fold(load("pendulum"), |layers, s| layers.with_assignment(s));
+    assert_eq!(decay(&resolve(under_ppo, None).unwrap()), (0.1, Some(7.0)));
 }
 
 #[test]

@@ -56,10 +56,11 @@ impl<'r> Drawn<'r> {
                 }
             }
         }
-        if columns.len() > MOST_PANELS {
-            return Err(PlotError::Panels(columns.len()));
-        }
         let mut notes = Vec::new();
+        if columns.len() > MOST_PANELS {
+            notes.push(Note::Panels { left_out: columns.len() - MOST_PANELS });
+            columns.truncate(MOST_PANELS);
+        }
         let mut panels = Vec::new();
         for column in columns {
             let shapes = groups.iter().map(|group| series::shape(group, column, options, &mut notes));

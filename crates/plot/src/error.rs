@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use hwasp_training::stats::StatsError;
 use thiserror::Error;
 
-/// The most panels in a picture.
+/// The most panels in a picture; further columns are left out, with a [`Note`](crate::Note).
 pub const MOST_PANELS: usize = 24;
 /// The most runs in a picture.
 pub const MOST_RUNS: usize = 1000;
@@ -21,11 +21,6 @@ pub enum PlotError {
     /// More runs than a picture can show.
     #[error("{0} runs are more than {MOST_RUNS} in one plot; plot fewer at a time")]
     Runs(usize),
-    /// More design totals than a picture can show.
-    #[error(
-        "{0} panels are more than {MOST_PANELS} in one plot; plot runs with fewer different design totals together"
-    )]
-    Panels(usize),
     /// A trailing mean over too few or too many rows.
     #[error("a trailing mean over {0} rows is outside [1, {LONGEST_WINDOW}]; 11 is usual")]
     Window(usize),

@@ -5,7 +5,7 @@ use hwasp_training::stats::{Bootstrap, Interval, LEAST_VALUES, Sample, StatsErro
 use rand::SeedableRng;
 
 use crate::curve::{Curve, RETURN};
-use crate::error::PlotError;
+use crate::error::{MOST_PANELS, PlotError};
 use crate::options::{Band, PlotOptions};
 
 /// Larger magnitudes are taken for a run that has blown up: they would leave nothing else to see.
@@ -66,6 +66,11 @@ impl Shape {
 /// Something that the picture does not show; it prints as a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
+    /// More columns than a picture has panels.
+    Panels {
+        /// How many have none.
+        left_out: usize,
+    },
     /// Rows without a finite value below 1e100, or whose steps go backwards.
     Skipped {
         /// The run's label.
@@ -110,6 +115,12 @@ pub enum Note {
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Panels { left_out } => {
+                write!(
+                    f,
+                    "{left_out} design totals are left out: a picture has {MOST_PANELS} panels; metrics.csv has all"
+                )
+            }
             Self::Skipped { label, series, rows } => {
                 write!(f, "{label}: {series} is drawn without {rows} of its rows (not finite, or out of order)")
             }

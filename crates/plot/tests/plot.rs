@@ -91,6 +91,32 @@ fn runs_that_share_a_label_are_one_line_and_a_band() {
     assert!(has_text(&picture, "alone"));
 }
 
+/// Where two of five seeds had failed, the legend counted three runs as if nobody had asked for more.
+#[test]
+fn a_legend_says_how_many_runs_there_should_be() {
+    let runs: Vec<Curve> = (0..3).map(|i| run("HWasP", 20, f64::from(i))).chain([run("ARS", 20, 5.0)]).collect();
+    let asked = [("HWasP", 5), ("ARS", 2), ("CMA-ES", 5)].map(|(label, runs)| (label.to_owned(), runs)).to_vec();
+    let picture = curves(&runs, &PlotOptions { asked, ..options() }).unwrap().svg;
+    assert!(has_text(&picture, "HWasP (3 of 5 runs)") && has_text(&picture, "ARS (1 of 2 runs)"), "{picture}");
+    assert!(texts(&picture).iter().any(|text| text.contains("no run finished of CMA-ES")), "{:?}", texts(&picture));
+    let whole = svg(&runs);
+    assert!(has_text(&whole, "HWasP (3 runs)") && has_text(&whole, "ARS"), "{:?}", texts(&whole));
+}
+
+/// Two runs had a band that was called a 95 % interval: the range from the one to the other, which holds the truth in half of all
+/// cases.
+#[test]
+fn up_to_three_runs_have_no_band_of_a_bootstrap() {
+    for (runs, polygons) in [(2, 0), (3, 0), (4, 3)] {
+        let curves_of: Vec<Curve> = (0..runs).map(|i| run("HWasP", 60, 20.0 * f64::from(i))).collect();
+        let options = PlotOptions { band: Band::Bootstrap, ..options() };
+        let picture = curves(&curves_of, &options).unwrap().svg;
+        // One in each of two panels, and one in the legend.
+        assert_eq!(count(&picture, "polygon"), polygons, "{runs} runs");
+        assert_eq!(texts(&picture).iter().any(|text| text.contains("bootstrap interval")), polygons > 0, "{runs} runs");
+    }
+}
+
 /// Four runs at heights 0, 1, 2 and 30 over the base: the interquartile mean is 1.5, the mean would be 8.25. The same
 /// picture with a single run at 1.5 beside them shows that both lie on one line.
 #[test]
@@ -246,8 +272,18 @@ fn what_cannot_be_drawn_is_an_error() {
     let mut uneven = run("a", 5, 0.0);
     uneven.totals[0].1.pop();
     assert_eq!(of(&[uneven], 11).to_string(), "`a` has 5 rows of steps or times but 4 of stiffness_total");
-    let named = |i: u32| Curve { totals: vec![(format!("total_{i}"), vec![1.0; 5])], ..run("a", 5, 0.0) };
-    assert!(matches!(of(&(0..30).map(named).collect::<Vec<_>>(), 11), PlotError::Panels(31)));
+}
+
+/// A run with more design groups than a picture has panels was trained, and then could not be finished: its `curves.svg` was an
+/// error.
+#[test]
+fn more_totals_than_panels_are_left_out() {
+    let totals = (0..30).map(|i| (format!("total_{i}"), vec![1.0; 5])).collect();
+    let plot = curves(&[Curve { totals, ..run("a", 5, 0.0) }], &options()).unwrap();
+    // The return has a panel, too.
+    assert_eq!(plot.notes, [Note::Panels { left_out: 7 }]);
+    assert!(has_text(&plot.svg, "total 22") && !has_text(&plot.svg, "total 23"), "{:?}", texts(&plot.svg));
+    assert!(plot.notes[0].to_string().starts_with("7 design totals are left out"), "{}", plot.notes[0]);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use hwasp_plot::{Band, Curve, IntervalRow, PlotOptions, XAxis, curve_panels, int
 use hwasp_runs::text::{ReadableUnit, grouped};
 use hwasp_runs::{RunError, saved_experiment, saved_provenance};
 use hwasp_study::{CellResult, Comparison, Figure, MethodFigures, Pair, SavedComparison};
+use hwasp_training::STILL;
 use hwasp_training::stats::{LEAST_VALUES, separation_by_chance};
 use maud::{Markup, html};
 
@@ -15,7 +16,7 @@ use crate::page::{KeyFigure, Page, Section};
 use crate::sections::curves::panels;
 use crate::sections::overview;
 use crate::sections::provenance::{command, origin};
-use crate::words::{decimal, decimals, duration, interval_or_none, spaced};
+use crate::words::{decimal, decimals, duration, interval_or_none, sentence, spaced};
 
 /// Reads a comparison and lays out its report.
 pub(super) fn page(folder: &Path, catalogue: &Catalogue) -> Result<Page, RunError> {
@@ -127,6 +128,7 @@ fn winner(comparison: &Comparison) -> Markup {
             (gallery(&[picture(&svg, "evaluations", "Evaluation of each method", about)], caption))
         }
         (unfinished(comparison))
+        (still(comparison))
         @if !comparison.improvement.is_empty() { (pairs(&comparison.improvement)) }
     }
 }
@@ -143,6 +145,18 @@ fn unfinished(comparison: &Comparison) -> Markup {
                     @for seed in &method.missing { li { (method.label) ", " (seed.to_string()) } }
                 }
             }
+        }
+    }
+}
+
+/// Seeds whose training changed nothing.
+fn still(comparison: &Comparison) -> Markup {
+    let still = || comparison.methods.iter().filter_map(|method| Some((&method.label, method.unchanged()?)));
+    html! {
+        @if still().next().is_some() {
+            h3 { "Trainings that changed nothing" }
+            p { (sentence(STILL)) "." }
+            ul.notes { @for (method, seeds) in still() { li { (method) ", " (seeds) } } }
         }
     }
 }

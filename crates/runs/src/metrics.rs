@@ -22,6 +22,7 @@ use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
 use error::shorten;
+use hwasp_experiment::MOST_GROUPS;
 use hwasp_training::MetricsRow;
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +37,7 @@ const EARLIER: [&str; 3] = ["kl", "entropy", "step_fraction"];
 /// The most metrics of a learner in a table.
 pub const MOST_METRICS: usize = 32;
 /// The most design totals in a table.
-pub const MOST_TOTALS: usize = 64;
+pub const MOST_TOTALS: usize = MOST_GROUPS;
 /// The most rows that are read.
 pub const MOST_ROWS: usize = 2_000_000;
 /// The longest line that is read, in bytes.

@@ -21,8 +21,9 @@
 //! | `evaluation/return`, `evaluation/discounted_return` | the means of the evaluation | the last |
 //! | `evaluation/median_discounted_return`, `evaluation/worst_discounted_return` | over its episodes | the last |
 //!
-//! A training that is resumed begins another file in the folder, with a `session_log` (message, 7) whose `status` (enum, 1) is
-//! `START`: readers then drop from the older files what comes behind the checkpoint.
+//! In a folder that has event files already, a training begins with a `session_log` (message, 7) whose `status` (enum, 1) is
+//! `START`: readers then drop from the older files what comes behind the checkpoint that it goes on from, or all of it where
+//! it begins anew.
 //!
 //! The step of a scalar is the number of simulator steps so far. A value that is not finite is left out.
 
@@ -56,6 +57,8 @@ pub struct TensorBoard {
     length: u64,
     /// Tags of the learner's metrics and of the design totals.
     tags: Vec<String>,
+    /// Whether there are older files in the folder.
+    has_older: bool,
     env_steps: u64,
     /// When the last record was written, s since 1970: never before the one before it, wherever the clock is set.
     wall_time: f64,
@@ -72,7 +75,9 @@ impl TensorBoard {
         let now = if latest < now() { now() } else { latest + 1.0 };
         let path = folder.join(format!("{PREFIX}{now:.6}.hwasp"));
         let file = File::create_new(&path).map_err(|source| TensorBoardError { path: path.clone(), source })?;
-        let mut board = Self { path, file, length: 0, tags: Vec::new(), env_steps: 0, wall_time: now, failing: false };
+        let has_older = latest > 0.0;
+        let (tags, wall_time) = (Vec::new(), now);
+        let mut board = Self { path, file, length: 0, tags, has_older, env_steps: 0, wall_time, failing: false };
         board.write(&version(now))?;
         Ok(board)
     }
@@ -117,7 +122,11 @@ impl Observer for TensorBoard {
                 let learner = learner.iter().map(|name| format!("train/{name}"));
                 self.tags = learner.chain(totals.iter().map(|name| format!("design/{name}"))).collect();
                 let now = self.tick();
-                resumed.map_or(Ok(()), |env_steps| self.write(&session(now, env_steps + 1)))
+                // A training that was killed before its first checkpoint is not resumed, it begins anew; its points are there.
+                match resumed.map(|env_steps| env_steps + 1).or(self.has_older.then_some(0)) {
+                    Some(first) => self.write(&session(now, first)),
+                    None => Ok(()),
+                }
             }
             Event::Iteration(row) => {
                 self.env_steps = row.env_steps;

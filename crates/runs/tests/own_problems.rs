@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use hwasp_core::{Dimension, Initial, Serial};
+use hwasp_core::{DesignGroup, DesignSpace, Dimension, Hardware, Initial, Law, Ports, Serial};
+use hwasp_diff::Scalar;
 use hwasp_experiment::{Catalogue, Experiment, Layers};
 use hwasp_problem::{AnyError, Built, Problem};
 use hwasp_runs::{Keeping, Provenance, RunFolder, SavedRun, no_extras};
@@ -144,4 +145,92 @@ fn problems_that_cannot_be_are_refused() {
     assert_eq!(told(Mine { name: "a", goal: 0.95, ..MINE }), "problem `a`: the rail ends at 0.9 m");
     let optimum = told(Mine { name: "a", optimum: 0, ..MINE });
     assert!(optimum.contains("the optimum of 0 design groups is given, but there are 1"), "{optimum}");
+}
+
+/// The reach problem with a design of any groups, of which the first parameter is the gear.
+struct Grouped(Vec<(String, usize)>);
+
+struct Gears(DesignSpace);
+
+impl Hardware for Gears {
+    fn design(&self) -> &DesignSpace {
+        &self.0
+    }
+
+    fn ports(&self) -> Ports {
+        Reach::new(ReachSettings::default()).unwrap().law().ports().clone()
+    }
+
+    fn effort<T: Scalar>(&self, design: &[T], command: &[T], _state: &[T], effort: &mut [T]) {
+        effort[0] = design[0] * command[0];
+    }
+}
+
+impl Problem for Grouped {
+    type Settings = ();
+
+    fn name(&self) -> &'static str {
+        "grouped"
+    }
+
+    fn defaults(&self) {}
+
+    fn build(&self, (): &()) -> Result<Built, AnyError> {
+        let group = |(name, count): &(String, usize)| DesignGroup {
+            name: name.clone(),
+            dimension: Dimension::None,
+            lo: 0.1,
+            hi: 2.0,
+            count: *count,
+            initial: Initial::Value(0.7),
+        };
+        let law = Law::new(Gears(DesignSpace::new(self.0.iter().map(group).collect())?));
+        Ok(Built::new(law, Reach::new(ReachSettings::default())?))
+    }
+}
+
+fn grouped<S: ToString>(groups: &[(S, usize)]) -> Result<Catalogue, String> {
+    let groups = groups.iter().map(|(name, count)| (name.to_string(), *count)).collect();
+    hwasp_testing::catalogue().clone().with(Grouped(groups)).map_err(|error| error.to_string())
+}
+
+/// `check` called a design group sound whose name or whose total a learning curve has no column for, and `train` failed at its first
+/// row; so it was with more groups than a learning curve has columns for, and with two whose totals have one name.
+#[test]
+fn groups_that_no_learning_curve_can_have_are_refused() {
+    let long = "a".repeat(59);
+    for (name, told) in [
+        ("return", "learning curves have a column of this name"),
+        ("kl", "learning curves have a column of this name"),
+        ("wall_s", "learning curves have a column of this name"),
+        ("spring stiffness", "use 1 to 58 letters, digits, `_` and `-`"),
+        ("learner.kl", "use 1 to 58 letters, digits, `_` and `-`"),
+        ("a,b", "use 1 to 58 letters, digits, `_` and `-`"),
+        (&long, "use 1 to 58 letters, digits, `_` and `-`"),
+        ("", "use 1 to 58 letters, digits, `_` and `-`"),
+    ] {
+        let error = grouped(&[("gear", 1), (name, 2)]).unwrap_err();
+        assert!(error.contains(&format!("the design group `{name}` cannot be called so: {told}")), "{name}: {error}");
+    }
+    let error = grouped(&[("x", 2), ("y", 1), ("x_total", 1)]).unwrap_err();
+    assert!(error.contains("the design groups `x` and `x_total` would both be the column `x_total`"), "{error}");
+    let many = |count| (0..count).map(|i| (format!("gear-{i}"), 1)).collect::<Vec<_>>();
+    let error = grouped(&many(65)).unwrap_err();
+    assert!(error.contains("its design has 65 groups, and learning curves have columns for 64"), "{error}");
+
+    // What is not refused can be trained: as many as there may be, and totals beside groups of one.
+    let mut most = vec![("x".to_owned(), 2), ("x-total".to_owned(), 1), ("a".repeat(58), 2)];
+    most.extend(many(61));
+    let catalogue = grouped(&most).unwrap();
+    let text = EXPERIMENT.replace("my-reach", "grouped").replace("goal = \"30 cm\"\n", "");
+    let spec = hwasp_experiment::resolve(Layers::from_text("a.toml", &text).unwrap(), None, &catalogue).unwrap();
+    let assembly = Assembly::new(&spec).unwrap();
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("many-groups");
+    let _ = fs::remove_dir_all(&path);
+    let provenance = Provenance::new(vec!["mine".into()], 1, 0);
+    let mut folder = RunFolder::create(&path, &spec, &provenance, Keeping::default()).unwrap();
+    let trained = train(&assembly, &Serial, &mut folder, &AtomicBool::new(false)).unwrap();
+    folder.finish(&assembly, &trained, &no_extras).unwrap();
+    let saved = SavedRun::open(&path, &catalogue).unwrap();
+    assert_eq!(saved.metrics().unwrap().design_totals, assembly.total_names());
 }

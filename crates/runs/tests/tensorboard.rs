@@ -194,3 +194,27 @@ fn a_resumed_training_says_where_it_goes_on() {
     assert_eq!(start[1], (2, 6_u64.to_le_bytes().to_vec()));
     assert_eq!((start[2].0, fields(&start[2].1)), (7, vec![(1, 1_u64.to_le_bytes().to_vec())]));
 }
+
+/// A training that was killed before its first checkpoint and resumed begins anew: nothing said so in its second file, and every
+/// point of the first one was shown twice.
+#[test]
+fn a_training_that_begins_anew_drops_what_is_there() {
+    let layers = hwasp_testing::layers("reach")
+        .with_override("train.env_steps", "2400")
+        .with_override("train.evaluation_episodes", "5");
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, None).unwrap()).unwrap();
+    let folder = empty("anew");
+    let mut files = Vec::new();
+    for _ in 0..2 {
+        let mut board = TensorBoard::create(&folder).unwrap();
+        train(&assembly, &Serial, &mut board, &AtomicBool::new(false)).unwrap();
+        files.push(fs::read(board.path()).unwrap());
+    }
+    let [first, second] = [&files[0], &files[1]].map(|file| records(file));
+    // The version, and where there is something to drop, where from: step 0. Then both have the same.
+    let start = fields(second[1]);
+    assert_eq!(start[1], (2, 0_u64.to_le_bytes().to_vec()));
+    assert_eq!((start[2].0, fields(&start[2].1)), (7, vec![(1, 1_u64.to_le_bytes().to_vec())]));
+    let values = |records: &[&[u8]]| records.iter().map(|event| scalars(event)).collect::<Vec<_>>();
+    assert_eq!(values(&second[2..]), values(&first[1..]));
+}

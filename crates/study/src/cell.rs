@@ -12,7 +12,7 @@ use hwasp_runs::{
     Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, Summary, encode, saved_experiment,
 };
 use hwasp_training::collect::ExperimentText;
-use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, train_from};
+use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, moved, train_from};
 use serde::{Deserialize, Serialize};
 
 use crate::error::CompareError;
@@ -71,6 +71,9 @@ pub struct CellResult {
     pub summary: Summary,
     /// Its learning curve.
     pub metrics: MetricsTable,
+    /// Whether its training changed no parameter ([`moved`]).
+    #[serde(default)]
+    pub unchanged: bool,
 }
 
 /// Is told how the cells get on, from several threads.
@@ -157,7 +160,8 @@ impl Cell {
 
     pub(crate) fn result(&self) -> Result<CellResult, CompareError> {
         let saved = SavedRun::open(&self.path, self.assembly.experiment().catalogue())?;
-        Ok(CellResult { label: self.label.clone(), summary: saved.summary()?, metrics: saved.metrics()? })
+        let unchanged = !moved(saved.assembly(), None, &saved.params()?);
+        Ok(CellResult { label: self.label.clone(), summary: saved.summary()?, metrics: saved.metrics()?, unchanged })
     }
 
     /// Why it has no figures where nothing failed.

@@ -97,6 +97,9 @@ pub struct MethodFigures {
     pub wall_s: Option<f64>,
     /// Candidates that failed, over all seeds.
     pub failed_candidates: u64,
+    /// Finished seeds whose training changed no parameter.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unchanged_seeds: Vec<u64>,
 }
 
 /// The smallest part of a training that its method does whole or not at all.
@@ -147,12 +150,20 @@ impl MethodFigures {
             piece: Some(Indivisible { what: contest.piece.what.to_owned(), env_steps: contest.piece.env_steps }),
             wall_s: mean(&|c| c.summary.wall_s),
             failed_candidates: cells.iter().filter_map(|c| c.summary.failed_candidates).sum(),
+            unchanged_seeds: cells.iter().filter(|c| c.unchanged).map(|c| c.summary.seed).collect(),
         })
     }
 
     /// How many seeds there should be; none where an old comparison does not say.
     pub fn asked(&self) -> Option<usize> {
         (self.finished_seeds.len() == self.seeds).then(|| self.seeds + self.missing.len())
+    }
+
+    /// The seeds whose training changed no parameter, in words: `seeds 0, 2`; none where there are none.
+    pub fn unchanged(&self) -> Option<String> {
+        let seeds: Vec<String> = self.unchanged_seeds.iter().map(ToString::to_string).collect();
+        let many = if seeds.len() == 1 { "seed" } else { "seeds" };
+        (!seeds.is_empty()).then(|| format!("{many} {}", seeds.join(", ")))
     }
 
     /// How many seeds finished, in words: `3 of 5`.

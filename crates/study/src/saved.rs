@@ -50,7 +50,8 @@ impl SavedComparison {
             for cell in own {
                 first.get_or_insert_with(|| cell.path.clone());
                 let (summary, metrics) = (saved_summary(&cell.path)?, saved_metrics(&cell.path)?);
-                cells.push(CellResult { label: method.label.clone(), summary, metrics });
+                let unchanged = method.unchanged_seeds.contains(&cell.seed);
+                cells.push(CellResult { label: method.label.clone(), summary, metrics, unchanged });
             }
         }
         let begun = || found.iter().find(|cell| comparison.methods.iter().any(|method| cell.is_among(method)));

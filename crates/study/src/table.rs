@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use hwasp_runs::text::{self, grouped};
+use hwasp_training::STILL;
 use hwasp_training::stats::{Interval, LEAST_VALUES};
 
 use crate::comparison::Comparison;
@@ -19,7 +20,7 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
     let threshold = comparison.threshold.map_or(NONE.to_owned(), |threshold| format!("{threshold:.1}"));
     let _ = write!(text, "| method | finished | evaluation | area under curve | steps to {threshold} |");
     for group in &groups {
-        let _ = write!(text, " {group} | error |");
+        let _ = write!(text, " {} | error |", text::markdown(group));
     }
     text.push_str(" steps | smallest piece | time |\n|---|---|---|---|---|");
     text.push_str(&"---|---|".repeat(groups.len()));
@@ -37,12 +38,16 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
     );
     text.push_str(&few_seeds(methods));
     let missing: Vec<String> =
-        methods.iter().flat_map(|m| m.missing.iter().map(|seed| format!("- {}, {seed}\n", m.label))).collect();
+        methods.iter().flat_map(|m| m.missing.iter().map(|seed| seed_line(&m.label, &seed.to_string()))).collect();
     if !missing.is_empty() {
         let _ = write!(text, "\nSeeds that did not finish, which are in none of the figures:\n\n{}", missing.concat());
     }
+    let still: String = methods.iter().filter_map(|m| Some(seed_line(&m.label, &m.unchanged()?))).collect();
+    if !still.is_empty() {
+        let _ = write!(text, "\nTrainings that changed nothing: {STILL}.\n\n{still}");
+    }
     if let Some(others) = comparison.others() {
-        let _ = write!(text, "\n{others}\n");
+        let _ = write!(text, "\n{}\n", text::markdown(&others));
     }
     if !improvement.is_empty() {
         text.push_str("\n| method | against | probability of improvement |\n|---|---|---|\n");
@@ -51,7 +56,7 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
                 Some(of) => interval(of.probability, of.interval, 2),
                 None => NONE.to_owned(),
             };
-            let _ = writeln!(text, "| {} | {} | {told} |", p.method, p.other);
+            let _ = writeln!(text, "| {} | {} | {told} |", text::markdown(&p.method), text::markdown(&p.other));
         }
     }
     text
@@ -67,7 +72,7 @@ fn row(m: &MethodFigures, groups: &[&str]) -> String {
     let steps = m.threshold.median_env_steps.map_or(NONE.to_owned(), |steps| format!("{:.2}M", steps / 1e6));
     let mut text = format!(
         "| {} | {} | {} | {} | {steps} ({} of {}) |",
-        m.label,
+        text::markdown(&m.label),
         m.finished(),
         figure(m.evaluation, 1),
         figure(m.area_under_curve, 1),
@@ -93,12 +98,17 @@ fn row(m: &MethodFigures, groups: &[&str]) -> String {
     text
 }
 
+/// A line about a seed. Labels are typed, and reasons may come from anywhere.
+fn seed_line(label: &str, seed: &str) -> String {
+    format!("- {}, {}\n", text::markdown(label), text::markdown(seed))
+}
+
 /// What is not known of methods with few seeds, and the seeds themselves.
 fn few_seeds(methods: &[MethodFigures]) -> String {
     let few = methods.iter().filter(|m| (1..LEAST_VALUES).contains(&m.seeds));
     let line = |m: &MethodFigures| {
         let values: Vec<String> = m.evaluations.iter().map(|value| format!("{value:.1}")).collect();
-        format!("- {}: {}\n", m.label, values.join(", "))
+        format!("- {}: {}\n", text::markdown(&m.label), values.join(", "))
     };
     let lines: String = few.map(line).collect();
     if lines.is_empty() {

@@ -9,7 +9,7 @@ use hwasp_core::{
     Anneal, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
-use hwasp_experiment::{ActivationKind, Experiment, Method, Place};
+use hwasp_experiment::{ActivationKind, Experiment, Method, Place, total_name};
 use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
@@ -198,11 +198,6 @@ impl Assembly {
         world.ready().map_err(AssembleError::Physics)?;
         Ok(world.with_horizon(task.horizon))
     }
-}
-
-/// The column of a group's total; a group of one is its own.
-pub fn total_name(group: &str, count: usize) -> String {
-    if count == 1 { group.to_owned() } else { format!("{group}_total") }
 }
 
 fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {

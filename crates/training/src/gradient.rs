@@ -1,7 +1,10 @@
 //! The loop that follows the policy's gradient: jobs out, a batch in, an update, an event.
 
+use std::ops::Range;
+
 use hwasp_algos::{Archive, Exchange, Learner, Metrics, Persist, StateError};
 use hwasp_core::{Batch, EpisodeKind, Episodes, Executor};
+use hwasp_experiment::Experiment;
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
@@ -112,34 +115,47 @@ impl<'a> Gradient<'a> {
         self.assembly.experiment().train.progress(self.learned.env_steps)
     }
 
-    /// How many episodes the iteration at hand has, 0 where the budget is spent.
+    /// How many episodes the iteration at hand begins with, 0 where the budget is spent.
     fn episodes(&self) -> u64 {
         self.assembly.iteration_episodes(self.learned.env_steps)
     }
 
-    /// The episodes of the iteration at hand.
+    /// The episodes of the iteration at hand. The last one goes on with further episodes, by index, as long as the budget holds a
+    /// whole one: how many depends on the steps of those before alone, and so on nothing that a resume could change.
     fn collect(&self, collector: &dyn Collector, experiment: &ExperimentText) -> Result<Batch, TrainError> {
-        let train = &self.assembly.experiment().train;
-        let episodes = Episodes {
-            seed: self.assembly.experiment().seed,
-            iteration: self.learned.iterations,
-            indices: 0..self.episodes(),
-            progress: self.progress(),
-            kind: EpisodeKind::Training,
-        };
-        let request = EpisodesRequest {
+        let mut parts = Vec::new();
+        let (mut taken, mut asked, mut more) = (self.learned.env_steps, 0, self.episodes());
+        while more > 0 {
+            let part = collector.rows(&self.request(experiment, asked..asked + more))?;
+            asked += more;
+            taken += part.env_steps();
+            more = self.assembly.further_episodes(taken);
+            parts.push(part);
+        }
+        Ok(Batch::join(parts).sound()?)
+    }
+
+    /// Asks for episodes of the iteration at hand.
+    fn request(&self, experiment: &ExperimentText, indices: Range<u64>) -> EpisodesRequest {
+        let Experiment { seed, train, .. } = self.assembly.experiment();
+        EpisodesRequest {
             experiment: experiment.clone(),
             stage: Stage::Training,
             params: self.params(),
-            episodes,
+            episodes: Episodes {
+                seed: *seed,
+                iteration: self.learned.iterations,
+                indices,
+                progress: self.progress(),
+                kind: EpisodeKind::Training,
+            },
             steps: Some(train.episode_steps),
-        };
-        Ok(collector.rows(&request)?.sound()?)
+        }
     }
 
     /// The update of the iteration at hand.
     fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
-        let asked = self.episodes() as usize;
+        let asked = batch.episodes.len() + batch.faults.len();
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
         if in_a_row >= MOST_FAULTY_ITERATIONS
@@ -159,7 +175,7 @@ impl<'a> Gradient<'a> {
 }
 
 /// The mean discounted and undiscounted returns of a batch's episodes.
-pub(crate) fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
+fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
     let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
     (mean(batch.returns(discount)), mean(batch.returns(1.0)))
 }

@@ -66,8 +66,8 @@ fn tell(
     learned.env_steps += scored.iter().map(|s| s.env_steps).sum::<u64>();
     learned.discarded_episodes += scored.iter().map(|s| s.discarded_episodes).sum::<u64>();
     if let Some(filter) = &mut state.filter {
-        for candidate in &scored {
-            filter.update(&candidate.seen);
+        for seen in scored.iter().filter_map(|candidate| candidate.seen.as_ref()) {
+            filter.join(seen);
         }
     }
     learned.failed_candidates += note_failures(learned, &scored, generation)?;
@@ -114,7 +114,7 @@ fn outcome(space: SearchSpace<'_>, state: State, run: &LoopContext<'_>) -> Resul
         Some((_, best)) if space.assembly.experiment().method.trains_inside() => best,
         Some((_, best)) => {
             // It is chosen for what comes after training: as everything is at its end.
-            let scoring = Scoring { space: &space, experiment: &run.experiment, progress: 1.0, seen: false };
+            let scoring = Scoring { space: &space, experiment: &run.experiment, progress: 1.0, seen: None };
             let judge = |params| scoring.score(run.collector, params, search.generation(), 0..FINAL_EPISODES as u64);
             let (center, best) = (judge(space.acting(&search.center(), filter.as_ref()))?, judge(best)?);
             for scored in [&center, &best] {

@@ -127,6 +127,19 @@ pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32
     Ok(Gradient::new(assembly, Some(archive))?.params())
 }
 
+/// What is to be said of trainings that have not [`moved`].
+pub const STILL: &str = "every update was rejected, or too small to be seen in the parameters; look at kl and step_fraction in \
+                         metrics.csv, and at the learner's settings";
+
+/// Whether a training changed any parameter by more than rounding does. `from`: the checkpoint that it was given; it counts where
+/// it is before the first iteration, as that of a training that goes on with the parameters of [another one](beginning).
+pub fn moved(assembly: &Assembly, from: Option<&Checkpoint>, params: &[f32]) -> bool {
+    const LEAST: f32 = 1e-6;
+    let given = from.filter(|checkpoint| checkpoint.iteration == 0);
+    let first = given.and_then(|checkpoint| params_at(assembly, checkpoint).ok()).unwrap_or_else(|| assembly.init());
+    first.iter().zip(params).any(|(from, to)| (to - from).abs() > LEAST * from.abs().max(1.0))
+}
+
 /// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
 ///
 /// # Errors

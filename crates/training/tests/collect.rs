@@ -88,6 +88,37 @@ fn another_process_gives_the_same_bits() {
     }
 }
 
+/// Forgets the last job.
+struct Forgetful(Arc<dyn Executor>);
+
+impl Collector for Forgetful {
+    fn rows(&self, request: &EpisodesRequest) -> Result<Batch, CollectError> {
+        Elsewhere(Arc::clone(&self.0)).rows(request)
+    }
+
+    fn results(&self, request: &EpisodesRequest) -> Result<Vec<EpisodeAnswer>, CollectError> {
+        Elsewhere(Arc::clone(&self.0)).results(request)
+    }
+
+    fn candidate(&self, request: &CandidateRequest, watch: &dyn Watch) -> Result<CandidateAnswer, CollectError> {
+        Elsewhere(Arc::clone(&self.0)).candidate(request, watch)
+    }
+
+    fn each(&self, count: usize, job: &(dyn Fn(usize, &dyn Collector) + Sync)) {
+        (1..count).for_each(|i| job(i - 1, self));
+    }
+}
+
+/// A candidate that a collector had not run was taken for one that somebody had stopped: the search ended as if it could be resumed.
+#[test]
+#[should_panic(expected = "candidate 3 of 4 was not scored, and nobody asked the search to stop")]
+fn a_candidate_that_is_not_run_was_not_stopped() {
+    let assembly = Assembly::new(&small("ars", &[("ars.directions", "2"), ("search.episodes", "1")])).unwrap();
+    let (executor, mut keeper): (Arc<dyn Executor>, _) = (executor(1).into(), Keeper::default());
+    let stop = AtomicBool::new(false);
+    let _ = train_by(&Forgetful(Arc::clone(&executor)), None, &assembly, &*executor, &mut keeper, &stop);
+}
+
 /// The answer to a candidate that was interrupted goes on from the state that its request brings along.
 #[test]
 fn a_candidate_goes_on_from_its_state() {

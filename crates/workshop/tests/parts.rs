@@ -9,7 +9,9 @@ use std::fmt::Write;
 use hwasp_core::{Dimension, parse_quantity};
 use hwasp_settings::{Item, Kind, described, written};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
-use hwasp_workshop::parts::{JointParts, Reason, SelectError, SpringCatalogue, TorsionSpring, Workshop, select, unfit};
+use hwasp_workshop::parts::{
+    JointParts, PartsList, Reason, SelectError, SpringCatalogue, TorsionSpring, Workshop, build_sheet, select, unfit,
+};
 
 const HEADER: &str = "part,wire_mm,outer_mm,turns,leg_angle_deg,leg_mm";
 
@@ -216,6 +218,24 @@ fn further_columns_are_ignored_and_told() {
     );
     // What is there already is no slip.
     assert_eq!(read("turn,parts").unwrap().ignored, ["turn", "parts"]);
+}
+
+/// A part called `T1 | <script>` broke the tables of parts.md, and a catalogue's name with a line break its text.
+#[test]
+fn names_of_parts_stay_in_their_cells() {
+    let saved = concat!(env!("CARGO_MANIFEST_DIR"), "/../../results/z-grasp/build/parts.json");
+    let mut list: PartsList = serde_json::from_str(&std::fs::read_to_string(saved).unwrap()).unwrap();
+    list.catalogue.name = "mine\n# <b>\u{202e}.csv".into();
+    for joint in &mut list.joints {
+        joint.spring.part = "T1 | <script>\u{1b}[2J".into();
+    }
+    let sheet = build_sheet(&list);
+    assert_eq!(sheet.matches("T1 \\| &lt;script>\u{fffd}[2J |").count(), 1 + list.joints.len(), "{sheet}");
+    assert!(sheet.contains("of the catalogue mine\u{fffd}# &lt;b>\u{fffd}.csv ("), "{sheet}");
+    let cells = |row: &str| row.replace("\\|", "").matches('|').count();
+    for table in sheet.split("\n\n").filter(|block| block.starts_with('|')) {
+        assert!(table.lines().all(|row| cells(row) == cells(table.lines().next().unwrap())), "{table}");
+    }
 }
 
 /// Bench and print files had a description each, and docs/parts.md a third one. This table is the one description.

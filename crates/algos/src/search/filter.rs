@@ -18,21 +18,37 @@ impl StateFilter {
         Self { count: 0.0, mean: vec![0.0; dim], squares: vec![0.0; dim] }
     }
 
-    /// Takes in observations, row by row (Chan et al. 1983, eq. 1.5: the sums of both parts joined).
+    /// One for the same observations that has seen none.
+    pub fn blank(&self) -> Self {
+        Self::new(self.mean.len())
+    }
+
+    /// Takes in observations, row by row.
     pub fn update(&mut self, obs: &[f32]) {
         let dim = self.mean.len();
         let rows = (obs.len() / dim.max(1)) as f64;
         if rows == 0.0 {
             return;
         }
-        let total = self.count + rows;
+        let mut other = Self { count: rows, ..Self::new(dim) };
         for j in 0..dim {
             let column = || obs.iter().skip(j).step_by(dim).map(|&o| f64::from(o));
-            let mean = column().sum::<f64>() / rows;
-            let squares: f64 = column().map(|o| (o - mean).powi(2)).sum();
-            let apart = mean - self.mean[j];
-            self.mean[j] += apart * rows / total;
-            self.squares[j] += squares + apart * apart * self.count * rows / total;
+            other.mean[j] = column().sum::<f64>() / rows;
+            other.squares[j] = column().map(|o| (o - other.mean[j]).powi(2)).sum();
+        }
+        self.join(&other);
+    }
+
+    /// Takes in what another one has seen (Chan et al. 1983, eq. 1.5: the sums of both parts joined).
+    pub fn join(&mut self, other: &Self) {
+        let total = self.count + other.count;
+        if other.count == 0.0 {
+            return;
+        }
+        for j in 0..self.mean.len() {
+            let apart = other.mean[j] - self.mean[j];
+            self.mean[j] += apart * other.count / total;
+            self.squares[j] += other.squares[j] + apart * apart * self.count * other.count / total;
         }
         self.count = total;
     }
@@ -81,7 +97,13 @@ mod tests {
         let column: Vec<f64> = obs.iter().step_by(2).map(|&o| f64::from(o)).collect();
         let mean = column.iter().sum::<f64>() / 30.0;
         let squares: f64 = column.iter().map(|o| (o - mean).powi(2)).sum();
-        for filter in [&whole, &parts] {
+        let mut joined = StateFilter::new(2);
+        for chunk in [&obs[..6], &[], &obs[6..]] {
+            let mut part = StateFilter::new(2);
+            part.update(chunk);
+            joined.join(&part);
+        }
+        for filter in [&whole, &parts, &joined] {
             assert!((filter.mean[0] - mean).abs() < 1e-12);
             assert!((filter.squares[0] - squares).abs() < 1e-9);
         }

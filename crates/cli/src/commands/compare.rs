@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hwasp_core::Threads;
 use hwasp_runs::RunError;
 use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome};
+use hwasp_training::STILL;
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
@@ -65,7 +66,16 @@ pub(super) fn run_grid(
     })?;
     progress.finish();
     let comparison = Comparison::new(&first.experiment(), &outcome, threshold)?;
-    comparison.write(folder, &outcome.finished, &first.plot_options())?;
+    if let Err(unwritten) = comparison.write(folder, &outcome.finished, &first.plot_options()) {
+        // What was found is told even if a disk is full by now.
+        if !quiet {
+            output::print(&format!("{}\n", comparison.markdown()))?;
+        }
+        return Err(unwritten.into());
+    }
+    for (method, seeds) in comparison.methods.iter().filter_map(|method| Some((&method.label, method.unchanged()?))) {
+        tracing::warn!("{method}, {seeds}: the training changed nothing: {STILL}");
+    }
     if let (Some(others), false) = (comparison.others(), quiet) {
         output::remark(&others);
     }

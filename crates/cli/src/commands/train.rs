@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use hwasp_core::Executor;
 use hwasp_plot::curves_svg;
 use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
-use hwasp_training::{Assembly, Checkpoint, Observer, ObserverError, TrainError, Trained, params_at, train_from};
+use hwasp_training::{Assembly, Checkpoint, Observer, ObserverError, STILL, TrainError, Trained, moved, train_from};
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
 use crate::args::TrainArgs;
@@ -59,22 +59,12 @@ pub(super) fn into_folder(
     progress.finish();
     let trained = trained.map_err(|error| ended(error, folder))?;
     if !moved(assembly, from, &trained.params) {
-        tracing::warn!(
-            "the training changed nothing: every update was rejected, or too small to be seen in the parameters; look at kl and \
-             step_fraction in metrics.csv, and at the learner's settings"
-        );
+        tracing::warn!("the training changed nothing: {STILL}");
     }
     let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", folder.path().display());
     let finished = folder.finish(assembly, &trained, &curves_svg);
     let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
     Ok((trained, summary))
-}
-
-/// Whether a training changed any parameter by more than rounding does.
-fn moved(assembly: &Assembly, from: Option<&Checkpoint>, params: &[f32]) -> bool {
-    const LEAST: f32 = 1e-6;
-    let first = from.and_then(|checkpoint| params_at(assembly, checkpoint).ok()).unwrap_or_else(|| assembly.init());
-    first.iter().zip(params).any(|(from, to)| (to - from).abs() > LEAST * from.abs().max(1.0))
 }
 
 fn keeping(args: &TrainArgs) -> Keeping {

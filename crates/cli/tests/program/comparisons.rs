@@ -54,6 +54,46 @@ fn nothing_is_certain_from_one_seed_or_episode() {
     }
 }
 
+/// Three episodes, none of whose changes had an interval, ended in "To be made precisely first: gear."
+#[test]
+fn no_part_is_named_from_few_episodes() {
+    let sandbox = Sandbox::with_run("precise-by-chance");
+    for (episodes, told) in [(1, "1 episode does not tell which part"), (3, "3 episodes do not tell which part")] {
+        let found = text(&sandbox.run(&format!("tolerances run --episodes {episodes} --out {episodes}")).stdout);
+        assert!(found.contains(told), "{found}");
+        assert!(!found.contains("precisely first") && !found.contains("local optimum"), "{found}");
+    }
+}
+
+/// Where all seeds of a method had failed, the page said "nothing else was trained".
+#[test]
+fn a_method_that_failed_altogether_is_on_the_page() {
+    let sandbox = Sandbox::new("compare-one-failed");
+    // The settings of PPO, which CMA-ES does not read, let every update diverge.
+    let line = "compare reach --methods hwasp,cmaes --seeds 2 --env-steps 36000 --threads 2 --set train.evaluation_episodes=5 \
+                --set ppo.learning_rate=1 --set ppo.max_grad_norm=0 --set noise.learning_rate_scale=100 --out both";
+    let output = sandbox.run(line);
+    let table = text(&output.stdout);
+    assert!(table.contains("| hwasp | 0 of 2 |") && table.contains("| cmaes | 2 of 2 |"), "{table}");
+    assert!(sandbox.run("report both").status.success());
+    let html = text(&sandbox.read("both/report.html"));
+    assert!(html.contains("no seed of hwasp finished") && !html.contains("nothing else was trained"), "{html}");
+}
+
+/// A table that could not be written was not printed either, after all trainings.
+#[test]
+fn a_table_that_cannot_be_written_is_printed() {
+    let sandbox = Sandbox::new("compare-unwritable");
+    std::fs::create_dir_all(sandbox.path("both/cells")).unwrap();
+    std::fs::create_dir(sandbox.path("both/table.md")).unwrap();
+    let line = "compare reach --methods hwasp --seeds 1 --env-steps 2400 --set train.evaluation_episodes=5 --out both";
+    let output = sandbox.run(line);
+    let (found, told) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(found.contains("| hwasp | 1 of 1 |") && told.contains("cannot write both/table.md"), "{found}{told}");
+    assert!(sandbox.run(&format!("{line} --quiet")).stdout.is_empty());
+}
+
 /// A second comparison on the same folder ended both of them with `is in use`.
 #[test]
 fn a_second_comparison_joins_the_first() {

@@ -66,14 +66,23 @@ fn parts_of_a_hand() {
 
     let longer = sandbox.refused(&["parts hand --episodes 3 --fine-tune 480"]);
     assert!(longer.contains("hand/build/tuned exists already"), "{longer}");
+    // It simulated for half a minute, could not write then, and printed nothing. The folder is tried first.
     sandbox.write("file", "");
     let blocked = sandbox.run("parts hand --episodes 2 --out file");
     let errors = String::from_utf8_lossy(&blocked.stderr).into_owned();
     assert!(blocked.status.code() == Some(1) && errors.contains("hint: name another folder with --out"), "{errors}");
+    assert!(blocked.stdout.is_empty() && !errors.contains("simulating the hand"), "{errors}");
+    // A file that cannot be written afterwards keeps nobody from what was found.
+    std::fs::create_dir_all(sandbox.path("taken/parts.json")).unwrap();
+    let late = sandbox.run("parts hand --episodes 2 --out taken");
+    let (found, errors) = (String::from_utf8_lossy(&late.stdout), String::from_utf8_lossy(&late.stderr));
+    assert!(found.contains("parts of the catalogue `built in`") && found.contains("on these parts"), "{found}");
+    assert!(late.status.code() == Some(1) && errors.contains("simulating the hand"), "{errors}");
+    assert!(errors.contains("taken/parts.json"), "{errors}");
 }
 
-/// Both simulated for half a minute and then could not write: nothing was printed. The folder is tried first, and what was found
-/// is printed even if a file cannot be written afterwards.
+/// `tolerances` simulated, could not write then, and printed nothing. The folder is tried first, and what was found is printed even
+/// if a file cannot be written afterwards.
 #[test]
 fn what_was_found_is_told_even_if_it_cannot_be_written() {
     let sandbox = Sandbox::with_run("parts-unwritable");

@@ -36,6 +36,15 @@ fn nothing_in_names_moves_the_cursor() {
     }
 }
 
+/// Results name files as messages do: a mark that turns the direction of writing went through standard output.
+#[test]
+fn nothing_in_results_turns_the_writing() {
+    let sandbox = Sandbox::new("printable-results");
+    let (code, stdout, stderr) = run(&sandbox, &["graph", "reach", "--out", "a\u{202e}b.svg"]);
+    assert_eq!((code, &*stdout, &*stderr), (Some(0), "a\u{fffd}b.svg\n", ""));
+    assert!(sandbox.path("a\u{202e}b.svg").is_file());
+}
+
 /// Errors of the command line stayed plain under `--log-format json`, so that a script could read all messages but these.
 #[test]
 fn errors_of_the_command_line_are_json_too() {
@@ -64,6 +73,31 @@ fn a_training_that_changes_nothing_says_so() {
     assert!(still.contains(warning), "{still}");
     let moved = told(&format!("{train} moved"));
     assert!(!moved.contains(warning), "{moved}");
+    // One that is resumed at its end has nothing left to change.
+    sandbox.put_stopped_run();
+    let resumed = told("train --resume run");
+    assert!(resumed.contains("resuming reach") && !resumed.contains(warning), "{resumed}");
+}
+
+/// The same trainings in a comparison had their row without a remark, as if their methods could do no better.
+#[test]
+fn a_comparison_of_trainings_that_change_nothing_says_so() {
+    let sandbox = Sandbox::new("nothing-compared");
+    // CMA-ES reads none of these.
+    let line = "compare reach --methods hwasp,cmaes --seeds 2 --env-steps 20000 --set train.evaluation_episodes=2 --set \
+                ppo.learning_rate=1e-9 --set design.learning_rate_scale=0 --set noise.learning_rate_scale=0 --out both";
+    let remark = "Trainings that changed nothing: every update was rejected, or too small";
+    // The second time all cells are there.
+    for _ in 0..2 {
+        let output = sandbox.run(line);
+        let (table, told) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+        assert!(table.contains(remark) && table.contains("\n- hwasp, seeds 0, 1\n"), "{table}");
+        assert!(!table.contains("- cmaes, seed"), "{table}");
+        assert!(told.contains("warning: hwasp, seeds 0, 1: the training changed nothing: every update"), "{told}");
+    }
+    assert!(sandbox.run("report both").status.success());
+    let html = String::from_utf8(sandbox.read("both/report.html")).unwrap();
+    assert!(html.contains("Trainings that changed nothing") && html.contains("<li>hwasp, seeds 0, 1</li>"), "{html}");
 }
 
 /// `--set train=[]` was lost where another option set a key of the table: `--env-steps` made a table of it.

@@ -2,7 +2,7 @@
 //! and by `.ci/run`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::sandbox::Sandbox;
@@ -61,6 +61,47 @@ fn nothing_is_left_open_in_its_files() {
             assert_eq!(text.matches("Arm::").count(), text.matches(arm).count(), "{template}: {text}");
             assert!(text.contains(arm), "{template}: {text}");
         }
+    }
+}
+
+/// The tests of a project named the lamp throughout, and had to be written anew at the first change; and the law said nothing of
+/// branches, for which the compiler's advice leads nowhere (`new_problem.rs` tries what it says now).
+#[test]
+fn what_a_project_is_changed_by_is_said_in_it() {
+    let sandbox = Sandbox::new("init-changes");
+    for template in ["plant", "mjcf"] {
+        assert!(sandbox.run(&format!("init --template {template} {template} --path {}", root())).status.success());
+        let read = |file: &str| String::from_utf8(sandbox.read(&format!("{template}/src/{file}"))).unwrap();
+        let tests = read("tests.rs");
+        let code = tests.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let naming: Vec<&str> = code.filter(|line| line.to_lowercase().contains("lamp")).collect();
+        assert_eq!(naming, ["use crate::Lamp as Own;"], "{template}");
+        let law = read("spring.rs");
+        for said in
+            ["it must not branch on values", "the compiler's advice, `T: PartialOrd`, leads", "| instead of | write |"]
+        {
+            assert!(law.contains(said), "{template}: {said}");
+        }
+    }
+}
+
+/// Addresses on the network stood in manifests at which this program never was.
+#[test]
+fn no_manifest_has_an_address_that_nobody_checked() {
+    let root = PathBuf::from(root());
+    let below = |folder: &str| fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
+    let mut manifests = vec![root.join("Cargo.toml"), root.join("fuzz/Cargo.toml")];
+    manifests.extend(below("crates").map(|folder| folder.join("Cargo.toml")).filter(|file| file.is_file()));
+    manifests.extend(below("templates").map(|folder| folder.join("Cargo.toml.in")).filter(|file| file.is_file()));
+    assert!(manifests.len() > 20, "{manifests:?}");
+    for manifest in manifests {
+        let text = fs::read_to_string(&manifest).unwrap();
+        let keys = text.split(['\n', '{', ',']).filter_map(|entry| Some(entry.split_once('=')?.0.trim()));
+        for key in keys {
+            let key = key.split('.').next().unwrap();
+            assert!(!["repository", "homepage", "git"].contains(&key), "{} has `{key}`", manifest.display());
+        }
+        assert!(!text.contains("://"), "{}", manifest.display());
     }
 }
 

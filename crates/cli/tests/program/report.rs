@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::sandbox::Sandbox;
+use crate::sandbox::{Sandbox, TINY};
 
 /// Elements that have no end.
 const VOID: [&str; 4] = ["meta", "br", "input", "!DOCTYPE"];
@@ -126,6 +126,16 @@ fn a_hand_with_and_without_parts() {
     for text in ["What the parts are worth", "on these parts", "groove ⌀"] {
         assert!(html.contains(text), "{text}");
     }
+}
+
+/// A page gave an evaluation of a handful of episodes the interval from the smallest to the largest of them.
+#[test]
+fn few_episodes_have_no_interval() {
+    let sandbox = Sandbox::new("report-few");
+    assert!(sandbox.run(&format!("{TINY} --set train.evaluation_episodes=3 --quiet --out run")).status.success());
+    let html = report(&sandbox, "run");
+    // Of the discounted and of the undiscounted return.
+    assert_eq!(html.matches("<td class=\"n\">no interval</td>").count(), 2, "{html}");
 }
 
 #[test]

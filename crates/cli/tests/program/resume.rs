@@ -129,6 +129,7 @@ fn a_folder_in_use() {
     child.wait().unwrap();
 }
 
+/// Ctrl-C ended `compare` with exit status 1, as if something had failed, where the help promises 130.
 #[test]
 fn a_comparison_that_was_stopped_goes_on_in_the_middle_of_its_cells() {
     let sandbox = Sandbox::new("compare-stopped");
@@ -153,6 +154,23 @@ fn a_comparison_that_was_stopped_goes_on_in_the_middle_of_its_cells() {
         let left = fs::read_dir(sandbox.path(&format!("many/cells/{cell}/checkpoints"))).unwrap().count();
         assert_eq!(left, 0, "a finished cell keeps no checkpoints");
     }
+}
+
+/// The same of `reproduce`, which runs a grid for each of its experiments.
+#[test]
+fn a_reproduction_that_was_stopped_says_so() {
+    let sandbox = Sandbox::new("reproduce-stopped");
+    let child = begin(&sandbox, "reproduce table1 --quick --threads 2 --out paper");
+    wait_for("no rows", || {
+        let text = fs::read_to_string(sandbox.path("paper/paper-mass-spring/cells/hwasp-seed0/metrics.csv"));
+        text.is_ok_and(|text| text.lines().count() > 2)
+    });
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    assert!(output.stdout.is_empty() && stderr(&output).contains("the same command goes on with them"), "{output:?}");
+    // It begins none of the other experiments.
+    assert!(!sandbox.path("paper/paper-mass-spring-50").exists());
 }
 
 #[test]

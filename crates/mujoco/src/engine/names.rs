@@ -204,6 +204,42 @@ pub(super) fn objects(model: &MjModel, kind: Kind) -> (MjtObjBase, usize) {
 }
 
 /// From the address of one joint to that of the next; joints stand in their order.
+///
+/// # Panics
+/// If there is no such joint, or it has no coordinate: the model and what is looked up in it do not belong together.
 fn range(addresses: &[i32], id: usize, end: usize) -> Range<usize> {
-    addresses[id] as usize..addresses.get(id + 1).map_or(end, |&next| next as usize)
+    let address = |at: i32| usize::try_from(at).expect("the engine gives every joint an address");
+    let found = address(addresses[id])..addresses.get(id + 1).map_or(end, |&next| address(next));
+    assert!(!found.is_empty(), "joint {id} has no coordinate: {found:?}");
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_ends_where_the_next_one_begins() {
+        let addresses = [0, 7, 8];
+        assert_eq!([0, 1, 2].map(|id| range(&addresses, id, 9)), [0..7, 7..8, 8..9]);
+    }
+
+    /// A joint that is not there had the range 0..0: whoever read its state read nothing, and said nothing of it.
+    #[test]
+    #[should_panic(expected = "index out of bounds")]
+    fn a_joint_that_is_not_there_has_no_range() {
+        range(&[0, 7], 2, 9);
+    }
+
+    #[test]
+    #[should_panic(expected = "joint 1 has no coordinate: 7..7")]
+    fn a_joint_without_coordinates_has_no_range() {
+        range(&[0, 7], 1, 7);
+    }
+
+    #[test]
+    #[should_panic(expected = "the engine gives every joint an address")]
+    fn a_joint_without_an_address_has_no_range() {
+        range(&[0, -1], 1, 7);
+    }
 }

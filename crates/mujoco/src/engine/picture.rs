@@ -58,6 +58,6 @@ impl Painter {
         let draw = |error: RendererError| PictureError::Draw(error.to_string());
         self.renderer.sync_data(simulation.data_mut()).map_err(draw)?;
         self.renderer.render().map_err(draw)?;
-        Ok(self.renderer.rgb_flat().unwrap_or_default())
+        Ok(self.renderer.rgb_flat().expect("a renderer draws colours unless it is told not to"))
     }
 }

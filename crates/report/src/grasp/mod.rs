@@ -95,9 +95,10 @@ fn player(sketch: &Sketch, takes: &[Take], poses: &[Poses]) -> Markup {
         }
     };
     let reels: Vec<Reel> = takes.iter().zip(poses).map(reel).collect();
-    // Texts and whole numbers: this cannot fail. The shapes' names are ours, so that nothing in it ends the script.
-    let data = serde_json::to_string(&reels).unwrap_or_default();
-    let start = poses.first().map(|poses| sketch.frame(poses, poses.moments.len() / 2)).unwrap_or_default();
+    // The shapes' names are ours, so that nothing in it ends the script.
+    let data = serde_json::to_string(&reels).expect("texts and whole numbers can be written as JSON");
+    let first = poses.first().expect("there is a player only where there are takes");
+    let start = sketch.frame(first, first.moments.len() / 2);
     html! {
         figure.player hidden data-step=(EVERY as f64 * STEP) {
             div.takes role="group" aria-label="Which grasp" {

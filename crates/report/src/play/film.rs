@@ -58,9 +58,9 @@ pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Resul
             step: 0,
             what: "it left no film or no outcome".into(),
         };
-        let (outcome, object) =
-            batch.episodes.first().and_then(|e| e.outcome.clone()).zip(film.object.clone()).ok_or_else(missing)?;
-        let undiscounted_return = batch.returns(1.0).first().copied().unwrap_or_default();
+        let outcome = batch.episodes.first().and_then(|episode| episode.outcome.clone());
+        let (outcome, object) = outcome.zip(film.object.clone()).ok_or_else(missing)?;
+        let undiscounted_return = *batch.returns(1.0).first().expect("an episode with an outcome has a return");
         Ok(Take { index, object, success: outcome.success, undiscounted_return, film })
     };
     (options.first..options.first.saturating_add(options.episodes)).map(take).collect()

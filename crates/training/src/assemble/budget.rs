@@ -25,21 +25,32 @@ impl Assembly {
     ///
     /// Iterations are as the experiment has them, but for the last: it takes what is left, from half to one and a half times
     /// the usual number of episodes. The gradient is then a mean over a sensible number of episodes, and the budget is spent to
-    /// within an episode. Where episodes end early, less than half an iteration may be left, which is not used.
+    /// within an episode. Where episodes end early, [`further_episodes`](Self::further_episodes) spend the rest.
     pub(crate) fn iteration_episodes(&self, env_steps: u64) -> u64 {
-        let train = &self.experiment().train;
-        let usual = train.episodes_per_iteration as u64;
-        match train.env_steps.saturating_sub(env_steps) / train.episode_steps as u64 {
+        let usual = self.experiment().train.episodes_per_iteration as u64;
+        match self.whole_episodes(env_steps) {
             left if 2 * left >= 3 * usual => usual,
             left if 2 * left >= usual => left,
             _ => 0,
         }
     }
 
+    /// The episodes by which the iteration at hand grows, once it has come to so many steps: where episodes end early, and what
+    /// that leaves is too little for an iteration of its own. A gradient of a few episodes would be mostly noise, and be followed
+    /// as far as any other.
+    pub(crate) fn further_episodes(&self, env_steps: u64) -> u64 {
+        if self.iteration_episodes(env_steps) > 0 { 0 } else { self.whole_episodes(env_steps) }
+    }
+
+    /// Episodes of the full length that the budget holds after so many steps.
+    fn whole_episodes(&self, env_steps: u64) -> u64 {
+        let train = &self.experiment().train;
+        train.env_steps.saturating_sub(env_steps) / train.episode_steps as u64
+    }
+
     /// Iterations of a training whose episodes all have their full length, and the episodes of the last one.
     pub fn iterations(&self) -> (u64, u64) {
-        let train = &self.experiment().train;
-        let (whole, usual) = (train.env_steps / train.episode_steps as u64, train.episodes_per_iteration as u64);
+        let (whole, usual) = (self.whole_episodes(0), self.experiment().train.episodes_per_iteration as u64);
         match (whole / usual, whole % usual) {
             // Less than half an iteration goes into the one before.
             (iterations, rest) if iterations > 0 && 2 * rest < usual => (iterations, usual + rest),
@@ -47,7 +58,8 @@ impl Assembly {
         }
     }
 
-    /// What the method cannot divide.
+    /// What the method cannot divide: less than it is left of the budget. A search whose episodes end early leaves besides what
+    /// its last choice did not need of the [`final_steps`](Self::final_steps).
     pub fn piece(&self) -> Piece {
         match self.generation() {
             Some((popsize, each)) => Piece { what: "generation", env_steps: popsize as u64 * each },

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use hwasp_algos::Archive;
-use hwasp_core::{EpisodeKind, EpisodeResult, Episodes, Purpose, RolloutError, all_failed, stream};
+use hwasp_algos::{Archive, StateFilter};
+use hwasp_core::{Episode, EpisodeKind, EpisodeResult, Episodes, Purpose, RolloutError, all_failed, stream};
 use rand::RngExt;
 
 use super::space::SearchSpace;
@@ -15,12 +15,13 @@ use crate::collect::{
     ExperimentText, Stage, Watch,
 };
 use crate::error::TrainError;
-use crate::gradient::mean_returns;
 use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer};
 
 /// How old a candidate's own training may be in a checkpoint that another candidate had made.
 const STALE: Duration = Duration::from_secs(1);
+/// Episodes of a candidate whose rows are held at once: as many as a worker steps side by side.
+const HELD: u64 = 32;
 /// Why no lock is poisoned.
 const UNPOISONED: &str = "a search does not go on after a panic in one of its candidates";
 
@@ -40,7 +41,8 @@ impl Generation<'_> {
         let spec = self.space.assembly.experiment();
         // All candidates of a generation see the same world: as it is at its beginning.
         let progress = spec.train.progress(state.learned.env_steps);
-        let scoring = Scoring { space: self.space, experiment: &run.experiment, progress, seen: filter.is_some() };
+        let seen = filter.as_ref().map(StateFilter::blank);
+        let scoring = Scoring { space: self.space, experiment: &run.experiment, progress, seen: seen.as_ref() };
         let (stopped, clock, collector) = (run.stopped, run.clock, run.collector);
         let shared = Mutex::new(Shared { state, observer: &mut *run.observer, clock, error: None });
         collector.each(self.candidates.len(), &|i, collector| {
@@ -66,7 +68,9 @@ impl Generation<'_> {
         if let Some(error) = error {
             return Err(error);
         }
-        if state.slots.iter().any(|slot| !matches!(slot, Slot::Scored(_))) {
+        if let Some(open) = state.slots.iter().position(|slot| !matches!(slot, Slot::Scored(_))) {
+            let count = self.candidates.len();
+            assert!(stopped(), "candidate {open} of {count} was not scored, and nobody asked the search to stop");
             observer.on(Event::Checkpoint(&state.checkpoint(clock)?))?;
             let budget = spec.train.env_steps;
             return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
@@ -85,8 +89,8 @@ pub(super) struct Scoring<'a> {
     pub(super) experiment: &'a ExperimentText,
     /// The share of all schedules that is done.
     pub(super) progress: f64,
-    /// Whether a filter wants to know what the controller saw.
-    pub(super) seen: bool,
+    /// One that has seen nothing, where a filter wants to know what the controller sees.
+    pub(super) seen: Option<&'a StateFilter>,
 }
 
 impl Scoring<'_> {
@@ -104,34 +108,26 @@ impl Scoring<'_> {
         let episodes = Episodes { seed: spec.seed, iteration, indices, progress: self.progress, kind };
         let (experiment, steps) = (self.experiment.clone(), Some(spec.train.episode_steps));
         let request = EpisodesRequest { experiment, stage: Stage::Training, params, episodes, steps };
-        let scored = if self.seen {
-            collector.rows(&request).and_then(|batch| Ok(batch.sound()?)).map(|batch| {
-                let sound = batch.faults.is_empty();
-                Scored {
-                    returns: sound.then(|| mean_returns(&batch, spec.discount())),
-                    failure: batch.faults.first().map(CandidateFailure::episode),
-                    env_steps: batch.env_steps(),
-                    discarded_episodes: batch.faults.len() as u64,
-                    seen: if sound { batch.obs } else { Vec::new() },
-                    ..Scored::default()
-                }
-            })
-        } else {
-            let sound = |results: Vec<EpisodeAnswer>| match all_failed(&results) {
-                Some(first) => Err(first.into()),
-                None => Ok(of_results(&results)),
-            };
-            collector.results(&request).and_then(sound)
+        let mut seen = self.seen.cloned();
+        let results = match &mut seen {
+            Some(seen) => looked_through(collector, &request, spec.discount(), seen),
+            None => collector.results(&request),
         };
-        let params = request.params;
-        match scored {
-            Ok(scored) => Ok(Scored { params, ..scored }),
+        let sound = |results: Vec<EpisodeAnswer>| match all_failed(&results) {
+            Some(first) => Err(first.into()),
+            None => Ok(of_results(&results)),
+        };
+        let scored = match results.and_then(sound) {
+            Ok(scored) => scored,
             Err(CollectError::Rollout(error)) => {
                 let failure = Some(CandidateFailure::episode(&error));
-                Ok(Scored { params, failure, env_steps: charged, ..Scored::default() })
+                Scored { failure, env_steps: charged, ..Scored::default() }
             }
-            Err(error) => Err(error.into()),
-        }
+            Err(error) => return Err(error.into()),
+        };
+        // What a candidate saw that failed is not what controllers see.
+        let seen = if scored.returns.is_some() { seen } else { self.seen.cloned() };
+        Ok(Scored { params: request.params, seen, ..scored })
     }
 
     /// Trains a controller of its own for a candidate's design. All candidates of a generation begin with the same weights
@@ -161,7 +157,36 @@ impl Scoring<'_> {
     }
 }
 
-/// What episodes without rows come to, of which at least one is sound.
+/// What episodes come to, and statistics of what the controller sees in them. Their rows are looked through a few episodes at a
+/// time and then forgotten, one episode after the other by index: neither memory nor bits depend on how many are held at once.
+fn looked_through(
+    collector: &dyn Collector,
+    request: &EpisodesRequest,
+    discount: f64,
+    seen: &mut StateFilter,
+) -> Result<Vec<EpisodeAnswer>, CollectError> {
+    let Range { start, end } = request.episodes.indices;
+    let mut results = Vec::with_capacity((end - start) as usize);
+    for part in request.split((end - start).div_ceil(HELD) as usize) {
+        let batch = collector.rows(&part)?;
+        let (discounted, undiscounted) = (batch.returns(discount), batch.returns(1.0));
+        let width = batch.obs.len() / batch.rows().max(1);
+        for (k, Episode { rows, end, outcome, .. }) in batch.episodes.into_iter().enumerate() {
+            seen.update(&batch.obs[rows.start * width..rows.end * width]);
+            results.push(Ok(EpisodeResult {
+                discounted_return: discounted[k],
+                undiscounted_return: undiscounted[k],
+                steps: rows.len(),
+                end,
+                outcome,
+            }));
+        }
+        results.extend(batch.faults.into_iter().map(Err));
+    }
+    Ok(results)
+}
+
+/// What episodes come to, of which at least one is sound.
 fn of_results(results: &[EpisodeAnswer]) -> Scored {
     let faults: Vec<&RolloutError> = results.iter().filter_map(|result| result.as_ref().err()).collect();
     let steps = |result: &EpisodeAnswer| match result {

@@ -94,3 +94,29 @@ impl<'a> SearchSpace<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Candidates of a search over the design are fractions of its ranges. Without limits they and the centre left [0, 1], where the
+    /// design is the same as at the limit and only chance tells candidates apart.
+    #[test]
+    fn fractions_of_ranges_stay_in_them() {
+        for (method, far) in [("ars-rl", "ars.noise_std"), ("cmaes-rl", "cmaes.sigma")] {
+            let layers = hwasp_testing::layers("mass-spring").with_override("train.env_steps", "1e7");
+            let layers = layers.with_override(far, "2");
+            let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap();
+            let mut search = SearchSpace::new(&assembly).searcher().unwrap();
+            let inside = |point: &[f64]| point.len() == 10 && point.iter().all(|x| (0.0..=1.0).contains(x));
+            for generation in 0..20 {
+                let candidates = search.ask();
+                assert!(candidates.iter().all(|candidate| inside(candidate)), "{method}: {candidates:?}");
+                // The higher the better: towards a corner.
+                let scores: Vec<f64> = candidates.iter().map(|candidate| candidate.iter().sum()).collect();
+                search.tell(&scores).unwrap();
+                assert!(inside(&search.center()), "{method}, generation {generation}: {:?}", search.center());
+            }
+        }
+    }
+}

@@ -40,8 +40,8 @@ pub(super) struct Scored {
     pub(super) env_steps: u64,
     /// Episodes whose physics failed.
     pub(super) discarded_episodes: u64,
-    /// What the controller saw, where a filter wants to know.
-    pub(super) seen: Vec<f32>,
+    /// Mean and deviation of what the controller saw, where a filter wants to know; nothing seen where the candidate failed.
+    pub(super) seen: Option<StateFilter>,
 }
 
 impl State {
@@ -105,8 +105,9 @@ impl Persist for State {
                 return Err(with.refuse("candidates", kinds.len() as f64, "the size of this generation"));
             }
             let wrong = |kind| with.refuse("candidates", kind as f64, "0 (waits), 1 (trains) or 2 (is scored)");
-            self.slots =
-                kinds.iter().map(|&kind| Slot::of(kind).ok_or_else(|| wrong(kind))).collect::<Result<_, _>>()?;
+            let seen = self.filter.as_ref().map(StateFilter::blank);
+            let slot = |&kind: &u64| Slot::of(kind, seen.as_ref()).ok_or_else(|| wrong(kind));
+            self.slots = kinds.iter().map(slot).collect::<Result<_, _>>()?;
         }
         for (i, slot) in self.slots.iter_mut().enumerate() {
             with.part(&format!("candidate.{i}"), slot)?;
@@ -124,12 +125,12 @@ impl Slot {
         }
     }
 
-    /// A blank one of a kind.
-    fn of(kind: u64) -> Option<Self> {
+    /// A blank one of a kind, which has seen nothing.
+    fn of(kind: u64, seen: Option<&StateFilter>) -> Option<Self> {
         match kind {
             0 => Some(Self::Waiting),
             1 => Some(Self::Training(Archive::new())),
-            2 => Some(Self::Scored(Scored::default())),
+            2 => Some(Self::Scored(Scored { seen: seen.cloned(), ..Scored::default() })),
             _ => None,
         }
     }
@@ -180,6 +181,6 @@ impl Persist for Scored {
         self.failure = cause.zip(text).map(|(cause, text)| CandidateFailure { cause, text });
         with.number("env_steps", &mut self.env_steps)?;
         with.number("discarded_episodes", &mut self.discarded_episodes)?;
-        with.series("seen", &mut self.seen)
+        self.seen.as_mut().map_or(Ok(()), |seen| with.part("seen", seen))
     }
 }

@@ -2,6 +2,7 @@
 
 use hwasp_core::unit;
 use hwasp_runs::text::ReadableUnit;
+use hwasp_training::stats::LEAST_VALUES;
 use hwasp_training::{Change, Evaluation, MeanInterval, SuccessRate};
 use serde::{Deserialize, Serialize};
 
@@ -62,36 +63,76 @@ pub struct Side {
 const NAMED: usize = 3;
 
 impl Sensitivities {
-    /// What follows, in a sentence: what has to be made precisely; or, where no error lowers the return, which way it rises.
+    /// What follows, in a sentence: what has to be made precisely; or, where no error lowers the return, which way it rises. Only
+    /// changes count whose interval leaves out 0; where there are none, the sentence says why nothing follows.
     pub fn verdict(&self) -> String {
-        let names = |parameters: &[&Sensitivity]| {
-            parameters.iter().take(NAMED).map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ")
-        };
-        let costly: Vec<&Sensitivity> = self.parameters.iter().filter(|parameter| parameter.loss > 0.0).collect();
+        let mut costly: Vec<(f64, &str)> = (self.parameters.iter())
+            .filter_map(|p| Some((p.sides().filter(|side| side.lowers()).map(Side::mean).reduce(f64::min)?, &*p.name)))
+            .collect();
+        costly.sort_by(|a, b| a.0.total_cmp(&b.0));
         if !costly.is_empty() {
-            return format!("To be made precisely first: {}.", names(&costly));
+            let names: Vec<&str> = costly.iter().take(NAMED).map(|(_, name)| *name).collect();
+            return format!("To be made precisely first: {}.", names.join(", "));
         }
         let mut gains: Vec<(f64, &str, &str)> = (self.parameters.iter())
-            .flat_map(|parameter| {
-                let gain = |side: &Side| side.change.undiscounted_return.mean;
-                let name = parameter.name.as_str();
-                [(gain(&parameter.minus), "smaller", name), (gain(&parameter.plus), "larger", name)]
-            })
-            .filter(|(gain, ..)| *gain > 0.0)
+            .flat_map(|p| ["smaller", "larger"].into_iter().zip(p.sides()).map(|(way, side)| (side, way, &*p.name)))
+            .filter(|(side, ..)| side.raises())
+            .map(|(side, way, name)| (side.mean(), way, name))
             .collect();
         gains.sort_by(|a, b| b.0.total_cmp(&a.0));
         if gains.is_empty() {
-            return "No error changes the return.".to_owned();
+            return self.undecided();
         }
         let gains = gains.iter().take(NAMED).map(|(gain, way, name)| format!("{name} {way} (+{gain:.1})"));
         format!(
-            "No error lowers the return: the design is no local optimum. What raises it most: {}.",
+            "No error is sure to lower the return, and some raise it: the design is no local optimum. What raises it most: {}.",
             gains.collect::<Vec<_>>().join(", ")
         )
+    }
+
+    /// Why nothing follows.
+    fn undecided(&self) -> String {
+        let changes = || self.parameters.iter().flat_map(Sensitivity::sides).map(|side| &side.change);
+        let fewest = changes().map(|change| change.episodes).min().unwrap_or(0);
+        if fewest < LEAST_VALUES as u64 {
+            let episodes = if fewest == 1 { "episode does" } else { "episodes do" };
+            return format!(
+                "{fewest} {episodes} not tell which part has to be precise: that takes {LEAST_VALUES}, and better more."
+            );
+        }
+        if self.parameters.iter().flat_map(Sensitivity::sides).all(|side| side.mean() == 0.0) {
+            return "No error changes the return.".to_owned();
+        }
+        if changes().all(|change| change.undiscounted_return.interval.is_some()) {
+            return "No error changes the return by more than chance does: more episodes may tell.".to_owned();
+        }
+        "Changes that are the same in all episodes have no interval: nothing is sure of them.".to_owned()
+    }
+}
+
+impl Side {
+    /// The mean change of the return.
+    fn mean(&self) -> f64 {
+        self.change.undiscounted_return.mean
+    }
+
+    /// Whether it is sure that it costs something.
+    fn lowers(&self) -> bool {
+        self.change.undiscounted_return.interval.is_some_and(|interval| interval.high < 0.0)
+    }
+
+    /// Whether it is sure that it gains something.
+    fn raises(&self) -> bool {
+        self.change.undiscounted_return.interval.is_some_and(|interval| interval.low > 0.0)
     }
 }
 
 impl Sensitivity {
+    /// Too small, and too large.
+    fn sides(&self) -> impl Iterator<Item = &Side> {
+        [&self.minus, &self.plus].into_iter()
+    }
+
     /// The parameter as it should be built, in a unit that reads well.
     pub fn designed(&self) -> String {
         self.told(self.nominal)
@@ -134,14 +175,15 @@ mod tests {
 
     use super::*;
 
-    fn sensitivity(name: &str, minus: f64, plus: f64) -> Sensitivity {
-        let interval = |mean: f64| Interval { low: mean - 1.0, high: mean + 1.0 };
-        let figure = |mean: f64| MeanInterval { mean, interval: Some(interval(mean)) };
+    /// Changes of the return with intervals of this much to either side; none of less than four episodes.
+    fn varied(name: &str, [minus, plus]: [f64; 2], spread: f64, episodes: u64) -> Sensitivity {
+        let interval = |mean: f64| Interval { low: mean - spread, high: mean + spread };
+        let figure = |mean: f64| MeanInterval { mean, interval: (episodes >= 4).then(|| interval(mean)) };
         let side = |value: f64, mean: f64| Side {
             value,
             undiscounted_return: figure(10.0 + mean),
             success: None,
-            change: Change { episodes: 4, undiscounted_return: figure(mean), success: None },
+            change: Change { episodes, undiscounted_return: figure(mean), success: None },
         };
         Sensitivity {
             name: name.to_owned(),
@@ -155,10 +197,23 @@ mod tests {
         }
     }
 
+    fn verdict(mut parameters: Vec<Sensitivity>) -> String {
+        parameters.sort_by(|a, b| b.loss.total_cmp(&a.loss));
+        let list = Sensitivities {
+            experiment: String::new(),
+            method: String::new(),
+            task: String::new(),
+            seed: 0,
+            nominal: serde_json::from_str(NOMINAL).unwrap(),
+            parameters,
+        };
+        list.verdict()
+    }
+
     /// `0.00663 m -0.1 mm` was one figure in two units.
     #[test]
     fn a_parameter_and_its_error_are_told_in_one_unit() {
-        let parameter = sensitivity("radius", -1.0, 2.0);
+        let parameter = varied("radius", [-1.0, 2.0], 1.0, 4);
         assert_eq!(
             (&*parameter.designed(), &*parameter.off_by(), &*parameter.simulated(&parameter.minus)),
             ("6.63 mm", "0.1 mm", "6.53 mm")
@@ -172,24 +227,55 @@ mod tests {
     /// Where every error raised the return, "No error costs anything" called a design perfect that was only unfinished.
     #[test]
     fn a_design_that_errors_improve_is_no_optimum() {
-        let verdict = |of: &[(f64, f64)]| {
-            let of = of.iter().zip(["a", "b", "c", "d"]);
-            let mut list = Sensitivities {
-                experiment: String::new(),
-                method: String::new(),
-                task: String::new(),
-                seed: 0,
-                nominal: serde_json::from_str(NOMINAL).unwrap(),
-                parameters: of.map(|(&(minus, plus), name)| sensitivity(name, minus, plus)).collect(),
-            };
-            list.parameters.sort_by(|a, b| b.loss.total_cmp(&a.loss));
-            list.verdict()
+        let told = |of: &[[f64; 2]]| {
+            let names = ["a", "b", "c", "d"];
+            verdict(of.iter().zip(names).map(|(&changes, name)| varied(name, changes, 0.2, 4)).collect())
         };
-        assert_eq!(verdict(&[(-1.0, 2.0), (0.5, -3.0)]), "To be made precisely first: b, a.");
-        let told = verdict(&[(1.0, 2.0), (0.5, 0.0), (4.0, 0.0)]);
-        assert!(told.starts_with("No error lowers the return: the design is no local optimum."), "{told}");
-        assert!(told.ends_with("What raises it most: c smaller (+4.0), a larger (+2.0), a smaller (+1.0)."), "{told}");
-        assert_eq!(verdict(&[(0.0, 0.0)]), "No error changes the return.");
+        assert_eq!(told(&[[-1.0, 2.0], [0.5, -3.0]]), "To be made precisely first: b, a.");
+        assert_eq!(
+            told(&[[1.0, 2.0], [0.5, 0.0], [4.0, 0.0]]),
+            "No error is sure to lower the return, and some raise it: the design is no local optimum. What raises it most: c \
+             smaller (+4.0), a larger (+2.0), a smaller (+1.0)."
+        );
+    }
+
+    /// One episode was enough for "To be made precisely first: gear." or "the design is no local optimum".
+    #[test]
+    fn nothing_follows_from_what_has_no_interval_or_one_with_0() {
+        for changes in [[-1.0, 2.0], [3.0, 2.0], [-1.0, -2.0], [0.0, 0.0]] {
+            assert_eq!(
+                verdict(vec![varied("gear", changes, 0.2, 1)]),
+                "1 episode does not tell which part has to be precise: that takes 4, and better more."
+            );
+            assert!(verdict(vec![varied("gear", changes, 0.2, 3)]).starts_with("3 episodes do not tell"));
+            assert_eq!(
+                verdict(vec![varied("gear", changes, 5.0, 4)]),
+                if changes == [0.0, 0.0] {
+                    "No error changes the return."
+                } else {
+                    "No error changes the return by more than chance does: more episodes may tell."
+                }
+            );
+        }
+        // Of several, those count that are sure, and of both sides the one that is.
+        let mut half = varied("d", [-1.5, -8.0], 1.0, 8);
+        half.plus.change.undiscounted_return.interval = Some(Interval { low: -17.0, high: 1.0 });
+        let mixed = vec![
+            varied("a", [-9.0, 1.0], 10.0, 8),
+            varied("b", [-2.0, 0.0], 1.0, 8),
+            varied("c", [5.0, 5.0], 1.0, 8),
+            half,
+        ];
+        assert_eq!(verdict(mixed), "To be made precisely first: b, d.");
+        // All episodes alike.
+        let mut alike = varied("a", [-1.0, 0.0], 0.2, 8);
+        for side in [&mut alike.minus, &mut alike.plus] {
+            side.change.undiscounted_return.interval = None;
+        }
+        assert_eq!(
+            verdict(vec![alike]),
+            "Changes that are the same in all episodes have no interval: nothing is sure of them."
+        );
     }
 
     const NOMINAL: &str = r#"{ "episodes": 4, "seed": 1, "discarded_episodes": 0, "success": [],

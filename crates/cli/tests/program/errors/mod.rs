@@ -44,6 +44,8 @@ struct Case {
     line: &'static str,
     code: i32,
     when: When,
+    /// Whether it prints a result all the same.
+    prints: bool,
 }
 
 /// What there is in the folder before.
@@ -66,13 +68,18 @@ enum When {
 }
 
 const fn case(what: &'static str, given: Given, line: &'static str) -> Case {
-    Case { what, given, line, code: 2, when: When::AtOnce }
+    Case { what, given, line, code: 2, when: When::AtOnce, prints: false }
 }
 
 impl Case {
     /// It fails on the way.
     const fn late(self) -> Self {
         Self { code: 1, ..self }
+    }
+
+    /// What was found is told before the error.
+    const fn printing(self) -> Self {
+        Self { prints: true, ..self }
     }
 
     const fn when(self, when: When) -> Self {
@@ -149,7 +156,7 @@ fn told(case: &Case, sandbox: &Sandbox) -> String {
     let message = String::from_utf8(output.stderr).unwrap();
     let all = format!("{what}: {line}\n{message}");
     assert_eq!(output.status.code(), Some(*code), "{all}");
-    assert!(output.stdout.is_empty(), "{all}{}", String::from_utf8_lossy(&output.stdout));
+    assert_ne!(output.stdout.is_empty(), case.prints, "{all}{}", String::from_utf8_lossy(&output.stdout));
     assert!(message.starts_with("error: ") && message.ends_with('\n') && !message.contains("panicked"), "{all}");
     if let When::Bound(said) = case.when {
         assert_eq!(message, said);

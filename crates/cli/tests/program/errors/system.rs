@@ -89,9 +89,10 @@ pub(super) const CASES: &[Case] = &[
             fs::create_dir_all(s.path("both/cells")).unwrap();
             fs::create_dir(s.path("both/table.md")).unwrap();
         }),
-        "hwasp compare reach --methods hwasp --seeds 1 --env-steps 2400 --quiet --out both",
+        "hwasp compare reach --methods hwasp --seeds 1 --env-steps 2400 --log-level error --out both",
     )
-    .late(),
+    .late()
+    .printing(),
     Case { code: 130, ..case("Ctrl-C", Nothing, LONG).when(When::UnderWay(|_| {})) },
     case("A folder that is moved away under a training, a file in its place, and Ctrl-C", Nothing, LONG).late().when(
         When::UnderWay(|s| {

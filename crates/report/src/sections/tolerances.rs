@@ -1,6 +1,6 @@
 //! Which part has to be precise.
 
-use hwasp_workshop::tolerances::{Sensitivities, Side};
+use hwasp_workshop::tolerances::{Sensitivities, Sensitivity, Side};
 use maud::{Markup, html};
 
 use super::provenance::not_yet;
@@ -24,6 +24,7 @@ fn sensitivities(list: &Sensitivities) -> Markup {
             "Each parameter off by its manufacturing error, one at a time, on the same " (list.nominal.episodes)
             " held-out episodes. The one whose error costs most return is on top."
         }
+        p { strong { (list.verdict()) } }
         (wide(&chart, "The chart; scroll to see all of it", "The changes are paired: each episode with itself."))
         table {
             caption { "Change of return, with 95 % intervals, and success with each parameter off to either side" }
@@ -38,8 +39,8 @@ fn sensitivities(list: &Sensitivities) -> Markup {
                     tr {
                         th scope="row" { (spaced(&parameter.name)) }
                         td { "±" (parameter.error_text) }
-                        td.n { (side(&parameter.minus)) }
-                        td.n { (side(&parameter.plus)) }
+                        td.n { (side(&parameter.minus, parameter)) }
+                        td.n { (side(&parameter.plus, parameter)) }
                     }
                 }
             }
@@ -47,11 +48,12 @@ fn sensitivities(list: &Sensitivities) -> Markup {
     }
 }
 
-fn side(side: &Side) -> Markup {
+fn side(side: &Side, of: &Sensitivity) -> Markup {
     let figure = &side.change.undiscounted_return;
     html! {
         (change(figure.mean, 1))
         br; small { (mean_interval(figure, 1)) }
+        br; small { "at " (of.simulated(side)) }
         @if let Some(rate) = &side.success { br; small { "success " (percent(rate.rate())) } }
     }
 }

@@ -29,7 +29,7 @@ impl Default for AdvantageConfig {
     }
 }
 
-/// What [`advantages`] gives, one value per row.
+/// What [`advantages`] gives, one value per row, and two per episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advantages {
     /// `Â_t = Σ_l (γλ)^l δ_{t+l}` with `δ_t = r_t + γ·V(s_{t+1}) - V(s_t)`.
@@ -38,6 +38,10 @@ pub struct Advantages {
     pub lambda_return: Vec<f32>,
     /// `Σ_l γ^l r_{t+l}` to the end of the episode, and nothing beyond.
     pub discounted_return: Vec<f32>,
+    /// `Σ_t γ^t r_t` of each episode, and beyond it the value of the state after it where that counts.
+    pub episode_return: Vec<f64>,
+    /// The same less V of the episode's first state.
+    pub episode_advantage: Vec<f64>,
 }
 
 /// The advantages of a batch of whole episodes.
@@ -52,22 +56,30 @@ pub fn advantages(
     bootstrap_truncated: bool,
 ) -> Advantages {
     let rows = batch.rows();
-    let mut out =
-        Advantages { advantage: vec![0.0; rows], lambda_return: vec![0.0; rows], discounted_return: vec![0.0; rows] };
+    let mut out = Advantages {
+        advantage: vec![0.0; rows],
+        lambda_return: vec![0.0; rows],
+        discounted_return: vec![0.0; rows],
+        episode_return: Vec::with_capacity(batch.episodes.len()),
+        episode_advantage: Vec::with_capacity(batch.episodes.len()),
+    };
     for (episode, &last_value) in batch.episodes.iter().zip(last_values) {
         let bootstrap = bootstrap_truncated && episode.end == End::Truncated;
         let mut next_value = if bootstrap { f64::from(last_value) } else { 0.0 };
-        let (mut advantage, mut total) = (0.0, 0.0);
+        let (mut advantage, mut total, mut whole) = (0.0, 0.0, next_value);
         for t in episode.rows.clone().rev() {
             let (reward, value) = (batch.reward[t], f64::from(values[t]));
             let delta = reward + discount * next_value - value;
             advantage = delta + discount * gae_lambda * advantage;
             total = reward + discount * total;
+            whole = reward + discount * whole;
             out.advantage[t] = advantage as f32;
             out.lambda_return[t] = (advantage + value) as f32;
             out.discounted_return[t] = total as f32;
             next_value = value;
         }
+        out.episode_return.push(whole);
+        out.episode_advantage.push(whole - next_value);
     }
     out
 }
@@ -99,6 +111,7 @@ mod tests {
                     last_obs: vec![],
                     last_state: vec![],
                     context: vec![],
+                    log_prob: 0.0,
                     outcome: None,
                 },
                 Episode {
@@ -107,6 +120,7 @@ mod tests {
                     last_obs: vec![],
                     last_state: vec![],
                     context: vec![],
+                    log_prob: 0.0,
                     outcome: None,
                 },
             ],
@@ -128,6 +142,9 @@ mod tests {
         assert_eq!(got.advantage, [-1.1875, -8.75, -23.0, -22.25, -45.0]);
         assert_eq!(got.lambda_return, [8.8125, 11.25, 7.0, 17.75, 5.0]);
         assert_eq!(got.discounted_return, [2.75, 3.5, 3.0, 6.5, 5.0]);
+        // The first was truncated: 2.75 and 0.5³·8 of what follows, less V of 10; the second less V of 40.
+        assert_eq!(got.episode_return, [3.75, 6.5]);
+        assert_eq!(got.episode_advantage, [-6.25, -33.5]);
     }
 
     #[test]

@@ -8,7 +8,10 @@
 mod adam;
 mod archive;
 mod baseline;
+mod draws;
 mod gae;
+#[cfg(test)]
+mod knob;
 mod learner;
 mod learner_kind;
 mod metrics;

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use hwasp_core::{Batch, Rows};
 
+use crate::draws::Draws;
+
 /// Rows of a block that is worked on at once: its activations stay in the first-level cache.
 pub(crate) const BLOCK: usize = 64;
 
@@ -25,6 +27,8 @@ pub(crate) struct Minibatch {
     action: Vec<f32>,
     pub(crate) log_prob: Vec<f32>,
     pub(crate) advantage: Vec<f32>,
+    /// What was drawn once an episode; to be [gathered](Draws::gather) from the same rows.
+    pub(crate) draws: Draws,
     obs_dim: usize,
 }
 

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use self::optimiser::Optimiser;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, BaselineConfig, InputDims};
+use crate::draws::Draws;
 use crate::gae::AdvantageConfig;
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
@@ -29,7 +30,7 @@ use crate::metrics::Metrics;
 /// | `log_std_lr_scale` | 1 | times the rate, for log standard deviations |
 /// | `entropy_coef` | 0 | weight of the entropy in the objective |
 /// | `max_grad_norm` | 0.5 | longest gradient |
-/// | `target_kl` | none | epochs end when the KL divergence passes 1.5 times this |
+/// | `target_kl` | none | epochs end when the KL divergence, of steps or of draws, passes 1.5 times this |
 /// | `normalize_advantages` | true | mean 0, variance 1 over the batch |
 /// | `bootstrap_truncated` | true | value the state after a truncated episode; the paper's toolkit does not |
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +59,7 @@ pub struct PpoConfig {
     pub entropy_coef: f64,
     /// Longest gradient.
     pub max_grad_norm: Option<f64>,
-    /// Epochs end when the KL divergence passes 1.5 times this.
+    /// Epochs end when the KL divergence, of steps or of draws, passes 1.5 times this.
     pub target_kl: Option<f64>,
     /// Whether advantages are centred and scaled over the batch.
     pub normalize_advantages: bool,
@@ -111,6 +112,14 @@ pub struct PpoSettings {
 
 /// What an update of [`Ppo`] tells.
 const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epochs"];
+/// The same of a policy that draws a part of the design once an episode.
+const DRAW_METRICS: &[&str] =
+    &["kl", "entropy", "clip_fraction", "grad_norm", "epochs", "design_kl", "design_clip_fraction"];
+
+/// What an update of this policy tells.
+fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
+    if policy.drawn_actions() == 0 { METRICS } else { DRAW_METRICS }
+}
 
 /// The learner: a policy's parameters, their optimiser and a baseline.
 ///
@@ -121,6 +130,7 @@ const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epoch
 /// | `clip_fraction` | share of rows in the last epoch whose ratio was clipped |
 /// | `grad_norm` | mean norm of the policy gradient before clipping |
 /// | `epochs` | epochs done; fewer than asked for where the KL limit stopped them |
+/// | `design_kl`, `design_clip_fraction` | the first and the third for what is drawn once an episode, the mean over the episodes; only where something is |
 pub struct Ppo<P: Policy> {
     optimiser: Optimiser<P>,
     baseline: Baseline,
@@ -140,7 +150,7 @@ impl<P: Policy> Learner for Ppo<P> {
     }
 
     fn metric_names(&self) -> &'static [&'static str] {
-        METRICS
+        metric_names(&*self.optimiser.policy)
     }
 
     fn update(
@@ -151,10 +161,12 @@ impl<P: Policy> Learner for Ppo<P> {
         iteration: u64,
     ) -> Result<Metrics, LearnError> {
         let Self { optimiser, baseline } = self;
-        let targets = baseline.targets(batch, &optimiser.config.advantages(), iteration)?;
+        let config = optimiser.config.advantages();
+        let targets = baseline.targets(batch, &config, iteration)?;
+        let draws = Draws::new(&*optimiser.policy, batch, &targets, &config);
         let before = (optimiser.params.clone(), optimiser.adam.clone());
         let result = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
-            optimiser.update(batch, &targets.advantage, progress, iteration)
+            optimiser.update(batch, (&targets.advantage, &draws), progress, iteration)
         });
         if result.is_err() {
             (optimiser.params, optimiser.adam) = before;
@@ -171,5 +183,7 @@ impl<P: Policy> Persist for Ppo<P> {
     }
 }
 
+#[cfg(test)]
+mod draw_tests;
 #[cfg(test)]
 mod tests;

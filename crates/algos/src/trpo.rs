@@ -20,6 +20,7 @@ use self::line_search::backtrack;
 use self::passes::Passes;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, InputDims};
+use crate::draws::Draws;
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
 use crate::minibatch::Minibatch;
@@ -29,12 +30,21 @@ const LEAST_CURVATURE: f64 = 1e-8;
 
 /// What an update of [`Trpo`] tells.
 const METRICS: &[&str] = &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected"];
+/// The same of a policy that draws a part of the design once an episode.
+const DRAW_METRICS: &[&str] =
+    &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected", "design_kl"];
+
+/// What an update of this policy tells.
+fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
+    if policy.drawn_actions() == 0 { METRICS } else { DRAW_METRICS }
+}
 
 /// The learner: a policy's parameters and a baseline.
 ///
 /// An update is one step: minimise -mean(ρ·A) under mean KL(old || new) ≤ `max_kl` (14). Its direction is H⁻¹g with g the
 /// gradient of the objective and H the curvature of the divergence, its length √(2·`max_kl`/xᵀHx), shortened until it
-/// holds what it promises.
+/// holds what it promises. What is [drawn](crate::draws) once an episode counts once an episode in objective, divergence and
+/// curvature: each is the sum over steps and draws, divided by the number of steps.
 ///
 /// | metric | meaning |
 /// |---|---|
@@ -45,6 +55,7 @@ const METRICS: &[&str] = &["kl", "entropy", "step_fraction", "gain", "cg_iterati
 /// | `cg_iterations` | iterations of conjugate gradients |
 /// | `tried` | steps that the line search tried |
 /// | `rejected` | updates so far that took no step |
+/// | `design_kl` | KL divergence of what is drawn once an episode, nats; only where something is |
 pub struct Trpo<P: Policy> {
     region: TrustRegion<P>,
     baseline: Baseline,
@@ -98,14 +109,16 @@ impl<P: Policy> TrustRegion<P> {
     }
 
     /// Gathers the batch, and the rows that its curvature is taken of.
-    fn gather(&mut self, batch: &Batch, advantage: &[f32], iteration: u64) {
+    fn gather(&mut self, batch: &Batch, (advantage, draws): (&[f32], &Draws), iteration: u64) {
         let dims = (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim());
         let all: Vec<u32> = (0..batch.rows() as u32).collect();
         self.batch.gather(batch, advantage, &all, dims);
+        self.batch.draws.gather(draws, &all);
         if self.config.fisher_rows.count(all.len()) < all.len() {
             let mut numbers = stream(self.seed, Purpose::Minibatches, iteration, 0);
             let some = self.config.fisher_rows.pick(all.len(), &mut numbers);
             self.curvature.gather(batch, advantage, &some, dims);
+            self.curvature.draws.gather(draws, &some);
         }
     }
 
@@ -140,18 +153,23 @@ impl<P: Policy> TrustRegion<P> {
         }
         let direction = scaled(&solution.x);
         let (params, candidate, passes, batch) = (&self.params, &mut self.candidate, &self.passes, &self.batch);
+        let mut design_kl = 0.0;
         let found = backtrack(start, max_kl, &self.config, |fraction| {
             for ((to, from), x) in candidate.iter_mut().zip(params).zip(&direction) {
                 *to = (f64::from(*from) - fraction * length * x) as f32;
             }
-            passes.evaluate(executor, batch, (params, candidate), progress)
+            let found = passes.evaluate(executor, batch, (params, candidate), progress);
+            design_kl = found.draw_kl;
+            (found.loss, found.kl)
         });
         if found.fraction == 0.0 {
             self.candidate.copy_from_slice(&self.params);
             self.rejected += 1;
+            design_kl = 0.0;
         }
         let mut log_std = vec![0.0; self.policy.action_dim()];
         self.policy.log_std(&self.candidate, progress, &mut log_std);
+        let names = metric_names(&*self.policy);
         let values = [
             found.kl,
             gaussian::entropy(&log_std),
@@ -160,8 +178,9 @@ impl<P: Policy> TrustRegion<P> {
             solution.iterations as f64,
             found.tried as f64,
             self.rejected as f64,
+            design_kl,
         ];
-        Ok(Metrics::new(METRICS, values.to_vec()))
+        Ok(Metrics::new(names, values[..names.len()].to_vec()))
     }
 }
 
@@ -171,7 +190,7 @@ impl<P: Policy> Learner for Trpo<P> {
     }
 
     fn metric_names(&self) -> &'static [&'static str] {
-        METRICS
+        metric_names(&*self.region.policy)
     }
 
     fn update(
@@ -183,8 +202,9 @@ impl<P: Policy> Learner for Trpo<P> {
     ) -> Result<Metrics, LearnError> {
         let Self { region, baseline } = self;
         let targets = baseline.targets(batch, &region.config.advantages, iteration)?;
+        let draws = Draws::new(&*region.policy, batch, &targets, &region.config.advantages);
         let metrics = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
-            region.gather(batch, &targets.advantage, iteration);
+            region.gather(batch, (&targets.advantage, &draws), iteration);
             region.step(executor, progress, iteration)
         })?;
         region.params.copy_from_slice(&region.candidate);

@@ -17,7 +17,7 @@ use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 use hwasp_tasks::pendulum::{Pendulum, PendulumSettings};
 use hwasp_tasks::reach::{Reach, ReachSettings};
 
-const PLACES: [Placement; 3] = [Placement::Graph, Placement::Action, Placement::Fixed(1.0)];
+const PLACES: [Placement; 4] = [Placement::Graph, Placement::Action, Placement::Episode, Placement::Fixed(1.0)];
 
 #[test]
 fn environment_steps_do_not_allocate() {

@@ -9,7 +9,7 @@ use hwasp_core::{Executor, Placement, Serial, Threads};
 
 #[test]
 fn training_gives_the_same_parameters_on_any_number_of_threads() {
-    for place in [Placement::Graph, Placement::Action] {
+    for place in [Placement::Graph, Placement::Action, Placement::Episode] {
         let case = Case::mass_spring(place);
         let train = |executor: &dyn Executor, seed| -> Vec<u32> {
             case.train(executor, seed, 3).iter().map(|p| p.to_bits()).collect()

@@ -32,6 +32,10 @@ impl Environment for Timed {
         self.inner.set_progress(progress);
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.inner.set_design(design);
+    }
+
     fn reset(&mut self, rng: &mut Stream) {
         self.inner.reset(rng);
     }

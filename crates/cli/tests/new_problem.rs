@@ -168,9 +168,16 @@ impl Task for Haul {
             state: vec![port("place", Dimension::Length)],
             context: Vec::new(),
             effort: vec![port("speed", Dimension::Speed)],
-            command: vec![CommandPort { name: "turn".into(), dimension: Dimension::AngularSpeed, lo: -5.0, hi: 5.0 }],
+            command: vec![CommandPort {
+                name: "turn".into(),
+                dimension: Dimension::AngularSpeed,
+                lo: -5.0,
+                hi: 5.0,
+                direct: true,
+            }],
             horizon: 20,
             time_step: 0.1,
+            shaped_by: vec![],
         }
     }
 

@@ -19,16 +19,18 @@ const STARTS: u64 = 8;
 /// has a design of its own: each parameter is drawn evenly between its limits, wherever the law's design begins.
 ///
 /// Promised are sane names, limits, horizon and time step, the law's ports; finite observations, states and rewards of the
-/// declared lengths; starts that depend on the random stream and on nothing else (or on nothing at all, with `fixed_start`);
-/// the same bits for the same commands; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
+/// declared lengths; starts that depend on design, random stream and nothing else (with `fixed_start` not on the stream);
+/// the same bits for the same commands; a world that depends on no more of the design than it says; limits on commands; an end by [`Truncated`](End::Truncated) exactly at the horizon,
 /// also at another one; nothing left of an episode after a reset, nothing shared between two environments.
 pub fn check_env(make: &dyn MakeEnvironment, law: &Law, fixed_start: bool) -> Result<(), EnvFault> {
     let spec = make.make(None).spec().clone();
     check_spec(&spec)?;
-    check_ports(&spec, law)?;
-    let check = Check { make, law, spec };
+    let reads = check_ports(&spec, law)?;
+    check_shapes(&spec, law)?;
+    let check = Check { make, law, reads, spec };
     check.starts(fixed_start)?;
     check.repeats()?;
+    check.shapes()?;
     check.limits()?;
     for horizon in [None, Some(1), Some(7)] {
         check.end(horizon)?;
@@ -72,8 +74,10 @@ fn port_names(spec: &EnvSpec) -> [(&'static str, Vec<String>); 4] {
     ]
 }
 
-fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
+/// Where the law's commands are among the environment's, which may have others.
+fn check_ports(spec: &EnvSpec, law: &Law) -> Result<Vec<usize>, EnvFault> {
     let ports = law.ports();
+    let reads = law.reads(&spec.command);
     for (kind, environment) in port_names(spec) {
         let law = match kind {
             "state" => &ports.state,
@@ -81,11 +85,24 @@ fn check_ports(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
             "command" => &ports.command,
             _ => continue,
         };
-        if *law != environment {
+        if *law != environment && (kind != "command" || reads.is_none()) {
             return Err(EnvFault::Ports { kind, law: law.clone(), environment });
         }
     }
-    Ok(())
+    let reads = reads.unwrap_or_default();
+    match spec.command.iter().enumerate().find(|(c, port)| !port.direct && !reads.contains(c)) {
+        Some((_, port)) => Err(EnvFault::Unread { name: port.name.clone() }),
+        None => Ok(reads),
+    }
+}
+
+/// The world's model can be made from what there is of the design alone.
+fn check_shapes(spec: &EnvSpec, law: &Law) -> Result<(), EnvFault> {
+    let groups: Vec<String> = law.design().groups().iter().map(|group| group.name.clone()).collect();
+    match spec.shaped_by.iter().find(|name| !groups.contains(name)) {
+        Some(name) => Err(EnvFault::Shaped { name: name.clone(), groups }),
+        None => Ok(()),
+    }
 }
 
 /// What can be seen of one moment; at the start the reward is 0 and the end is none.
@@ -143,12 +160,15 @@ impl Snapshot {
 struct Check<'a> {
     make: &'a dyn MakeEnvironment,
     law: &'a Law,
+    /// Where the law's commands are among the environment's.
+    reads: Vec<usize>,
     spec: EnvSpec,
 }
 
 impl Check<'_> {
-    /// Resets to the start of this episode's stream.
-    fn reset(env: &mut dyn Environment, episode: u64) -> Result<Snapshot, EnvFault> {
+    /// Resets to the start of this episode's stream, in the world of this design.
+    fn reset(env: &mut dyn Environment, design: &[f64], episode: u64) -> Result<Snapshot, EnvFault> {
+        env.set_design(design);
         env.reset(&mut stream(0, Purpose::Check, 0, episode));
         Snapshot::take(env, 0, 0.0, None)
     }
@@ -175,7 +195,8 @@ impl Check<'_> {
         let mut state = vec![0.0; self.spec.state.len()];
         let mut effort = vec![0.0; self.spec.effort.len()];
         env.state(&mut state);
-        self.law.effort(design, command, &state, &mut effort);
+        let read: Vec<f64> = self.reads.iter().map(|&c| command[c]).collect();
+        self.law.effort(design, &read, &state, &mut effort);
         let result = env.step(&effort, sent);
         Snapshot::take(env, step, result.reward, result.end)
     }
@@ -183,7 +204,7 @@ impl Check<'_> {
     /// The episode of this number, up to its end or to [`STEPS`] steps.
     fn episode(&self, env: &mut dyn Environment, episode: u64) -> Result<Vec<Snapshot>, EnvFault> {
         let (design, commands) = self.inputs(episode, STEPS.min(env.spec().horizon));
-        let mut snapshots = vec![Self::reset(env, episode)?];
+        let mut snapshots = vec![Self::reset(env, &design, episode)?];
         for (i, command) in commands.iter().enumerate() {
             snapshots.push(self.step(env, &design, (command, command), i + 1)?);
             if snapshots[i + 1].end.is_some() {
@@ -197,9 +218,10 @@ impl Check<'_> {
     fn starts(&self, fixed: bool) -> Result<(), EnvFault> {
         let mut env = self.make.make(None);
         let mut starts = Vec::new();
+        let (design, _) = self.inputs(0, 0);
         for episode in 0..STARTS {
-            starts.push(Self::reset(env.as_mut(), episode)?);
-            let again = Self::reset(env.as_mut(), episode)?;
+            starts.push(Self::reset(env.as_mut(), &design, episode)?);
+            let again = Self::reset(env.as_mut(), &design, episode)?;
             starts[episode as usize].check_same(&again, "the same stream starts both", 0)?;
         }
         let first_of_its_kind = |i: &usize| starts[..*i].iter().all(|s| s.check_same(&starts[*i], "", 0).is_err());
@@ -217,13 +239,20 @@ impl Check<'_> {
         };
         let mut fresh = self.make.make(None);
         compare(&self.episode(fresh.as_mut(), 0)?, "both are the same episode in fresh environments")?;
-        compare(&self.episode(env.as_mut(), 0)?, "a reset leaves nothing of the episode before")?;
+        let cause = "a reset leaves nothing of the episode before";
+        compare(&self.episode(env.as_mut(), 0)?, cause)?;
+        if !self.spec.shaped_by.is_empty() {
+            // The episode before was in the world of another design.
+            let mut other = self.make.make(None);
+            self.episode(other.as_mut(), 1)?;
+            compare(&self.episode(other.as_mut(), 0)?, cause)?;
+        }
 
         let (design, commands) = self.inputs(0, wanted.len() - 1);
         let (other_design, other_commands) = self.inputs(1, wanted.len() - 1);
         let mut beside = self.make.make(None);
-        Self::reset(env.as_mut(), 0)?;
-        Self::reset(beside.as_mut(), 1)?;
+        Self::reset(env.as_mut(), &design, 0)?;
+        Self::reset(beside.as_mut(), &other_design, 1)?;
         let mut beside_runs = true;
         for (i, (command, other)) in commands.iter().zip(&other_commands).enumerate() {
             let snapshot = self.step(env.as_mut(), &design, (command, command), i + 1)?;
@@ -234,12 +263,35 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Of the design, the world depends on what it says alone: the law is the same in both of these.
+    fn shapes(&self) -> Result<(), EnvFault> {
+        let (design, commands) = self.inputs(5, STEPS.min(self.spec.horizon));
+        let (mut other, _) = self.inputs(6, 0);
+        for (i, value) in other.iter_mut().enumerate() {
+            if self.spec.shaped_by.contains(&self.law.design().group_of(i).name) {
+                *value = design[i];
+            }
+        }
+        let cause = "both worlds are made from the same design, as far as `shaped_by` says what they are made from";
+        let (mut one, mut two) = (self.make.make(None), self.make.make(None));
+        Self::reset(one.as_mut(), &design, 5)?.check_same(&Self::reset(two.as_mut(), &other, 5)?, cause, 0)?;
+        for (i, command) in commands.iter().enumerate() {
+            let first = self.step(one.as_mut(), &design, (command, command), i + 1)?;
+            let second = self.step(two.as_mut(), &design, (command, command), i + 1)?;
+            first.check_same(&second, cause, i + 1)?;
+            if first.end.is_some() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
     /// A command beyond its limits does what the limit does.
     fn limits(&self) -> Result<(), EnvFault> {
         let (mut at, mut beyond) = (self.make.make(None), self.make.make(None));
         let (design, commands) = self.inputs(2, STEPS.min(self.spec.horizon));
-        Self::reset(at.as_mut(), 2)?;
-        Self::reset(beyond.as_mut(), 2)?;
+        Self::reset(at.as_mut(), &design, 2)?;
+        Self::reset(beyond.as_mut(), &design, 2)?;
         for (i, command) in commands.iter().enumerate() {
             let (mut limit, mut sent) = (command.clone(), command.clone());
             for (c, port) in self.spec.command.iter().enumerate() {
@@ -267,7 +319,7 @@ impl Check<'_> {
         }
         for episode in [3, 4] {
             let (design, commands) = self.inputs(episode, found);
-            Self::reset(env.as_mut(), episode)?;
+            Self::reset(env.as_mut(), &design, episode)?;
             for (i, command) in commands.iter().enumerate() {
                 let end = self.step(env.as_mut(), &design, (command, command), i + 1)?.end;
                 if end == Some(End::Terminated) {

@@ -143,6 +143,16 @@ impl DesignSpace {
             .collect()
     }
 
+    /// The group that parameter `i` belongs to.
+    pub fn group_of(&self, i: usize) -> &DesignGroup {
+        let mut end = 0;
+        let holds = |group: &&DesignGroup| {
+            end += group.count;
+            i < end
+        };
+        self.groups.iter().find(holds).expect("every parameter belongs to a group")
+    }
+
     /// Parameter `i` in SI from its unbounded stand-in `u`.
     pub fn squash<T: Scalar>(&self, i: usize, u: T) -> T {
         let (lo, hi) = self.bounds[i];

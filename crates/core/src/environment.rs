@@ -73,6 +73,9 @@ pub struct CommandPort {
     pub lo: f64,
     /// The most it takes.
     pub hi: f64,
+    /// Whether plant or task read the command themselves. Where only the law does (`false`), a policy that samples the law's
+    /// effort does not sample the command as well.
+    pub direct: bool,
 }
 
 /// What an environment is from outside.
@@ -92,10 +95,17 @@ pub struct EnvSpec {
     pub horizon: usize,
     /// The time that a step takes, s: the controller acts once in it.
     pub time_step: f64,
+    /// The groups of design parameters that the world's model is made from ([`Environment::set_design`]); none for most
+    /// worlds, which meet the design only through the law. Such parameters stay as they are during an episode.
+    pub shaped_by: Vec<String>,
 }
 
 /// Physics, without purpose: what the robot and the world do under an effort.
 pub trait Plant: Send {
+    /// Told the design (SI, as [`Environment::set_design`] has it) before each start, for physics that depend on it. What
+    /// cannot be made of it is a [`fault`](Self::fault) after the next step.
+    fn set_design(&mut self, _design: &[f64]) {}
+
     /// One control step under `effort` (from the law) and `command` (clipped to the motors' limits), both held.
     fn advance(&mut self, effort: &[f64], command: &[f64]);
 
@@ -118,6 +128,9 @@ pub trait Task: Send {
 
     /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
     fn set_progress(&mut self, _progress: f64) {}
+
+    /// Told the design (SI, as [`Environment::set_design`] has it) before each start, after the plant.
+    fn set_design(&mut self, _design: &[f64]) {}
 
     /// Puts the plant into a start state drawn from `rng`.
     fn reset(&mut self, plant: &mut Self::Plant, rng: &mut Stream);
@@ -150,7 +163,9 @@ pub trait Environment: Send {
     /// Told before each start how much of training is done, in [0, 1], for tasks that begin easier; 1 in evaluations.
     fn set_progress(&mut self, _progress: f64) {}
 
-    /// Told before each start the whole design, SI, for worlds whose model depends on it.
+    /// Told before each start the whole design, SI, for worlds whose model depends on it ([`EnvSpec::shaped_by`]): what was
+    /// drawn for the episode, within its limits; the policy's own values for what is not; and what was built, which errors of
+    /// the workshop may have put outside of the limits.
     fn set_design(&mut self, _design: &[f64]) {}
 
     /// Starts an episode.
@@ -218,6 +233,11 @@ impl<T: Task> Environment for Robot<T> {
 
     fn set_progress(&mut self, progress: f64) {
         self.task.set_progress(progress);
+    }
+
+    fn set_design(&mut self, design: &[f64]) {
+        self.plant.set_design(design);
+        self.task.set_design(design);
     }
 
     fn reset(&mut self, rng: &mut Stream) {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use hwasp_diff::{Program, Var};
 
 use crate::design::{DesignError, DesignGroup, DesignSpace, Initial};
+use crate::environment::CommandPort;
 use crate::hardware::{Hardware, Ports};
 pub use fault::LawError;
 use fault::check_names;
@@ -147,6 +148,14 @@ impl Law {
     /// The names of inputs and outputs.
     pub fn ports(&self) -> &Ports {
         &self.ports
+    }
+
+    /// Where the law's commands are among those of an environment, which has them in the same order, and may have others that
+    /// the law does not read. None where one of them is missing or out of order.
+    pub fn reads(&self, commands: &[CommandPort]) -> Option<Vec<usize>> {
+        let mut places = commands.iter().enumerate();
+        let mut place = |name: &String| places.find(|(_, port)| port.name == *name).map(|(place, _)| place);
+        self.ports.command.iter().map(&mut place).collect()
     }
 
     /// The law in the simulator's numbers. Nothing is allocated, but by the first calls that run at the same time.

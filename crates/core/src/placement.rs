@@ -12,6 +12,9 @@ pub enum Placement {
     Graph,
     /// In the action: HWasP-Minimal. The parameter is sampled at every step, and the plant evaluates the law.
     Action,
+    /// In the action, drawn once at the start of an episode and held: HWasP-Minimal at the rate at which a body can change. Its
+    /// probability counts once an episode.
+    Episode,
     /// Nowhere: it keeps this value, SI, which lies within the limits.
     Fixed(f64),
     /// Nowhere: the mechanism was built with this value, SI. Limits are for what is chosen; what came out of a workshop, with its
@@ -24,7 +27,7 @@ impl Placement {
     pub fn kept(self) -> Option<f64> {
         match self {
             Self::Fixed(value) | Self::Built(value) => Some(value),
-            Self::Graph | Self::Action => None,
+            Self::Graph | Self::Action | Self::Episode => None,
         }
     }
 }
@@ -62,37 +65,62 @@ pub enum PlacementError {
         /// Names on the environment's side.
         environment: Vec<String>,
     },
-    /// Not one standard deviation per command.
-    #[error("noise for {given} commands, but there are {needed}")]
+    /// Not one standard deviation per command, or per effort that is sampled.
+    #[error("noise for {given} {what}, but there are {needed}")]
     Noise {
+        /// commands or efforts.
+        what: &'static str,
         /// Standard deviations given.
         given: usize,
-        /// Commands there are.
+        /// Commands or efforts there are.
         needed: usize,
+    },
+    /// A parameter that the world's model is made from, placed where it would change within an episode.
+    #[error(
+        "the world's model is made from {name}, which stays as it is during an episode: place it as Episode or Fixed, not as \
+         {place:?}"
+    )]
+    Shaped {
+        /// The parameter.
+        name: String,
+        /// Where it was placed.
+        place: Placement,
+    },
+    /// A command that does nothing.
+    #[error("nobody reads the command {name}: it is no port of the law, and plant and task leave it to the law")]
+    Unread {
+        /// The command.
+        name: String,
     },
 }
 
-/// The components of an action, in this order: design parameters in the action, efforts if any parameter is in the graph,
-/// commands.
+/// The components of an action, in this order: design parameters that are drawn once an episode, design parameters of every
+/// step, efforts if any parameter is in the graph, commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct ActionLayout {
-    /// Indices of the design parameters in the action.
+    /// Indices of the design parameters in the action, those that are drawn once an episode first.
     pub(crate) sampled: Vec<usize>,
+    /// How many of them are drawn once an episode.
+    pub(crate) drawn: usize,
     /// Efforts in the action: the law's, or none.
     pub(crate) efforts: usize,
-    /// Commands.
-    pub(crate) commands: usize,
+    /// Indices of the commands in the action.
+    pub(crate) commands: Vec<usize>,
+    /// Indices of the others: only the law reads them, and its effort is sampled.
+    pub(crate) unsampled: Vec<usize>,
 }
 
 impl ActionLayout {
-    pub(crate) fn new(placements: &[Placement], efforts: usize, commands: usize) -> Self {
-        let sampled = (0..placements.len()).filter(|&i| placements[i] == Placement::Action).collect();
-        let graph = placements.contains(&Placement::Graph);
-        Self { sampled, efforts: if graph { efforts } else { 0 }, commands }
+    pub(crate) fn new(placements: &[Placement], efforts: usize, ports: &[CommandPort]) -> Self {
+        let at = |place| (0..placements.len()).filter(move |&i| placements[i] == place);
+        let sampled = at(Placement::Episode).chain(at(Placement::Action)).collect();
+        let efforts = if placements.contains(&Placement::Graph) { efforts } else { 0 };
+        let (commands, unsampled) = (0..ports.len()).partition(|&c| efforts == 0 || ports[c].direct);
+        Self { sampled, drawn: at(Placement::Episode).count(), efforts, commands, unsampled }
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.sampled.len() + self.efforts + self.commands
+        self.sampled.len() + self.efforts + self.commands.len()
     }
 }
 
@@ -103,6 +131,10 @@ pub(crate) struct ActionDecoder {
     law: Law,
     layout: ActionLayout,
     limits: Vec<(f64, f64)>,
+    /// Where the law's commands are among the environment's.
+    reads: Vec<usize>,
+    /// The law's commands.
+    read: Vec<f64>,
     /// The design of this step: fixed values, and the action's where it has them.
     design: Vec<f64>,
     pub(crate) effort: Vec<f64>,
@@ -110,24 +142,34 @@ pub(crate) struct ActionDecoder {
 }
 
 impl ActionDecoder {
-    pub(crate) fn new(law: &Law, placements: &[Placement], layout: &ActionLayout, ports: &[CommandPort]) -> Self {
+    /// `reads` are the places of the law's commands among `ports`.
+    pub(crate) fn new(
+        (law, reads): (&Law, &[usize]),
+        placements: &[Placement],
+        layout: &ActionLayout,
+        ports: &[CommandPort],
+    ) -> Self {
         Self {
             law: law.clone(),
             layout: layout.clone(),
             limits: ports.iter().map(|p| (p.lo, p.hi)).collect(),
+            reads: reads.to_vec(),
+            read: vec![0.0; reads.len()],
             design: placements.iter().map(|place| place.kept().unwrap_or(0.0)).collect(),
             effort: vec![0.0; law.ports().effort.len()],
             command: vec![0.0; ports.len()],
         }
     }
 
-    /// Fills `effort` and `command` from an action at a state.
+    /// Fills `effort` and `command` from an action, and the commands that are not in it, at a state.
     #[inline]
-    pub(crate) fn decode(&mut self, action: &[f64], state: &[f64]) {
+    pub(crate) fn decode(&mut self, action: &[f64], unsampled: &[f64], state: &[f64]) {
         let (sampled, rest) = action.split_at(self.layout.sampled.len());
         let (efforts, commands) = rest.split_at(self.layout.efforts);
-        for ((limited, &command), &(lo, hi)) in self.command.iter_mut().zip(commands).zip(&self.limits) {
-            *limited = command.clamp(lo, hi);
+        let sent = self.layout.commands.iter().zip(commands).chain(self.layout.unsampled.iter().zip(unsampled));
+        for (&c, &command) in sent {
+            let (lo, hi) = self.limits[c];
+            self.command[c] = command.clamp(lo, hi);
         }
         if self.layout.efforts > 0 {
             self.effort.copy_from_slice(efforts);
@@ -137,6 +179,9 @@ impl ActionDecoder {
             let (lo, hi) = self.law.design().bounds(i);
             self.design[i] = value.clamp(lo, hi);
         }
-        self.law.effort(&self.design, &self.command, state, &mut self.effort);
+        for (read, &c) in self.read.iter_mut().zip(&self.reads) {
+            *read = self.command[c];
+        }
+        self.law.effort(&self.design, &self.read, state, &mut self.effort);
     }
 }

@@ -30,7 +30,8 @@ fn log_probabilities_are_densities() {
         }
         // Early, where designs are sampled beyond their limits, and late, where the commands' noise has changed too.
         let outside: usize = [0.1, 0.4].into_iter().map(|progress| check_log_prob(&policy, &params, progress)).sum();
-        let samples = policy.spec().placements.contains(&Placement::Action);
+        let placements = &policy.spec().placements;
+        let samples = placements.contains(&Placement::Action) || placements.contains(&Placement::Episode);
         assert_eq!(outside > 0, samples, "the limits of sampled designs were not met");
     }
 }
@@ -49,19 +50,22 @@ fn check_log_prob(policy: &Arc<HardwarePolicy>, params: &[f32], progress: f64) -
     let log_std = log_std(policy, params, progress);
     let names = policy.space().names();
     let mut outside = 0;
-    for r in 0..rows {
-        let mut density = 0.0;
+    for (r, episode) in batch.episodes.iter().flat_map(|episode| episode.rows.clone().map(move |r| (r, episode))) {
+        // Of what is drawn once an episode, and of what is sampled at this step.
+        let mut density = [0.0; 2];
         for (j, name) in policy.action_names().iter().enumerate() {
             let (a, m, s) = (f64::from(action[j * rows + r]), f64::from(mean[j * rows + r]), f64::from(log_std[j]));
             let z = (a - m) / s.exp();
-            density -= 0.5 * z * z + s + 0.5 * gaussian::LOG_TWO_PI;
+            density[usize::from(j >= policy.drawn_actions())] -= 0.5 * z * z + s + 0.5 * gaussian::LOG_TWO_PI;
             if let Some(i) = names.iter().position(|n| n == name) {
                 let (lo, hi) = policy.space().bounds(i);
                 outside += usize::from(!(lo..=hi).contains(&a));
             }
         }
-        let recorded = f64::from(batch.log_prob[r]);
-        assert!((recorded - density).abs() < 1e-3, "{recorded} against {density}, {:?}", policy.spec().placements);
+        for (recorded, density) in [episode.log_prob, batch.log_prob[r]].into_iter().zip(density) {
+            let off = f64::from(recorded) - density;
+            assert!(off.abs() < 1e-3, "{recorded} against {density}, {:?}", policy.spec().placements);
+        }
     }
     outside
 }

@@ -62,6 +62,12 @@ enum Wrong {
     NoEnd,
     DeafToHorizon,
     StrongGear,
+    /// Nothing, in a world that is made from the gear.
+    Shaped,
+    ShapedByNobody,
+    ShapedInSecret,
+    OldShape,
+    UnreadCommand,
 }
 
 /// A point pushed about, wrong in one way.
@@ -71,6 +77,8 @@ struct Point {
     shared: Arc<AtomicUsize>,
     x: f64,
     taken: usize,
+    /// What the world is made from.
+    gear: Option<f64>,
 }
 
 const HORIZON: usize = 20;
@@ -83,9 +91,16 @@ impl Point {
             state: vec![port("x")],
             context: vec![],
             effort: vec![port("force")],
-            command: vec![CommandPort { name: "motor".into(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
+            command: vec![CommandPort {
+                name: "motor".into(),
+                dimension: Dimension::None,
+                lo: -1.0,
+                hi: 1.0,
+                direct: true,
+            }],
             horizon: horizon.unwrap_or(HORIZON),
             time_step: 0.1,
+            shaped_by: vec![],
         };
         match wrong {
             Wrong::Unnamed => spec.observation[1] = port(" "),
@@ -96,9 +111,14 @@ impl Point {
             Wrong::Timeless => spec.time_step = 0.0,
             Wrong::OtherEffort => spec.effort[0] = port("torque"),
             Wrong::DeafToHorizon => spec.horizon = HORIZON,
+            Wrong::Shaped | Wrong::OldShape => spec.shaped_by = vec!["gear".into()],
+            Wrong::ShapedByNobody => spec.shaped_by = vec!["shank".into()],
+            Wrong::UnreadCommand => {
+                spec.command.push(CommandPort { name: "brake".into(), direct: false, ..spec.command[0].clone() });
+            }
             _ => {}
         }
-        Self { wrong, spec, shared, x: 0.0, taken: 0 }
+        Self { wrong, spec, shared, x: 0.0, taken: 0, gear: None }
     }
 
     fn count(&self) -> f64 {
@@ -109,6 +129,13 @@ impl Point {
 impl Environment for Point {
     fn spec(&self) -> &EnvSpec {
         &self.spec
+    }
+    fn set_design(&mut self, design: &[f64]) {
+        self.gear = match self.wrong {
+            Wrong::Shaped | Wrong::ShapedInSecret => Some(design[0]),
+            Wrong::OldShape => self.gear.or(Some(design[0])),
+            _ => None,
+        };
     }
     fn reset(&mut self, rng: &mut Stream) {
         self.taken = 0;
@@ -131,7 +158,8 @@ impl Environment for Point {
     }
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
         let limited = command[0].clamp(-1.0, 1.0);
-        self.x += effort[0] + 0.1 * if self.wrong == Wrong::NoLimits { command[0] } else { limited };
+        self.x += effort[0] * self.gear.unwrap_or(1.0)
+            + 0.1 * if self.wrong == Wrong::NoLimits { command[0] } else { limited };
         if self.wrong == Wrong::Shared {
             self.x += 1e-12 * self.count();
         }
@@ -181,6 +209,26 @@ fn names_limits_horizon_and_time_step() {
         fault(Wrong::OtherEffort, false).unwrap_err().to_string(),
         r#"the law's effort ports are ["force"], the environment's ["torque"]"#
     );
+}
+
+/// A world may be made from the design, if it says from what of it; and is made anew for each episode.
+#[test]
+fn worlds_say_what_they_are_made_from() {
+    assert_eq!(fault(Wrong::Shaped, false), Ok(()));
+    assert_eq!(
+        fault(Wrong::ShapedByNobody, false).unwrap_err().to_string(),
+        r#"the world's model is made from `shank`, but the design has ["gear"]"#
+    );
+    let secret = fault(Wrong::ShapedInSecret, false).unwrap_err();
+    assert!(matches!(secret, EnvFault::Differs { cause, step: 1, .. } if cause.contains("`shaped_by`")), "{secret}");
+    let old = fault(Wrong::OldShape, false).unwrap_err();
+    assert!(matches!(old, EnvFault::Differs { cause, .. } if cause.contains("a reset leaves nothing")), "{old}");
+}
+
+/// An environment may have commands that the law does not read; somebody has to.
+#[test]
+fn somebody_reads_each_command() {
+    assert_eq!(fault(Wrong::UnreadCommand, false), Err(EnvFault::Unread { name: "brake".into() }));
 }
 
 #[test]

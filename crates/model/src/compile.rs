@@ -124,6 +124,12 @@ impl Compiler<'_, '_> {
             draws: stage.map_or_else(Vec::new, |stage| compiler.names.columns.draws_of(stage)),
         };
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
+        let (read, _) = self.formulas.inputs(&law);
+        let command = |at: usize| match self.names.columns.all()[at] {
+            Column::Command(i) => Some(i),
+            _ => None,
+        };
+        let law_reads: Vec<usize> = read.into_iter().filter_map(command).collect();
         let (law, states) = self.traced_law(&space, &law)?;
         let shaping = shaping.map(|found| Shaping {
             formula: formula(self, None, numbered(&found.parts)),
@@ -145,7 +151,15 @@ impl Compiler<'_, '_> {
         });
         let kind_names = settings.kinds.iter().map(|(name, _)| Arc::from(name.as_str()));
         let other = if settings.kinds.is_empty() { "all" } else { "other" };
-        let env = self.env(&observed, &law);
+        let mut env = self.env(&observed, &law);
+        // What only the law reads is not sampled where the law's efforts are.
+        let (read, _) = self.formulas.inputs(&outputs);
+        let by_task = |i: usize| read.iter().any(|&at| self.names.columns.all()[at] == Column::Command(i));
+        for (i, port) in env.command.iter_mut().enumerate() {
+            port.direct = direct[i].is_some() || by_task(i) || !law_reads.contains(&i);
+        }
+        let groups = shaping.iter().flat_map(|shaping: &Shaping| &shaping.parameters);
+        env.shaped_by = groups.map(|&i| uniforms[i].clone()).collect();
         let derived = |column: &Column| matches!(column, Column::Engine(reading) if reading.is_derived());
         let mut robot = Robot {
             plain: false,

@@ -225,9 +225,11 @@ impl Task for SwingUp {
                 dimension: Dimension::Torque,
                 lo: -MOTOR_LIMIT,
                 hi: MOTOR_LIMIT,
+                direct: true,
             }],
             horizon: self.horizon,
             time_step: TIME_STEP,
+            shaped_by: vec![],
         }
     }
 

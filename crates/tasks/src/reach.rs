@@ -192,9 +192,16 @@ impl Task for ReachTask {
             state: vec![port("x", Dimension::Length)],
             context: vec![],
             effort: vec![port("velocity", Dimension::Speed)],
-            command: vec![CommandPort { name: "speed".to_owned(), dimension: Dimension::None, lo: -1.0, hi: 1.0 }],
+            command: vec![CommandPort {
+                name: "speed".to_owned(),
+                dimension: Dimension::None,
+                lo: -1.0,
+                hi: 1.0,
+                direct: true,
+            }],
             horizon: self.horizon,
             time_step: self.time_step,
+            shaped_by: vec![],
         }
     }
 

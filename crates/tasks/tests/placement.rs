@@ -25,6 +25,10 @@ impl Environment for Recorder {
         self.inner.spec()
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.inner.set_design(design);
+    }
+
     fn reset(&mut self, rng: &mut Stream) {
         self.inner.reset(rng);
     }
@@ -58,9 +62,10 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         squash,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
+        sees_design: false,
         law: law.clone(),
         placements,
-        noise: Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.3.into(), train: true },
+        noise: Noise { command: vec![0.3.into()], effort: vec![3.0.into()], design: 0.3.into(), train: true },
     };
     HardwarePolicy::new(spec, env).unwrap()
 }

@@ -72,9 +72,11 @@ impl Task for Deliver {
                 dimension: Dimension::Force,
                 lo: -MOTOR_LIMIT,
                 hi: MOTOR_LIMIT,
+                direct: true,
             }],
             horizon: 150,
             time_step: DT,
+            shaped_by: vec![],
         }
     }
 

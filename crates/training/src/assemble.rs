@@ -233,11 +233,12 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
         squash: spec.controller.squash,
         observation_center: spec.controller.observation_center.clone(),
         observation_scale: spec.controller.observation_scale.clone(),
+        sees_design: false,
         law: law.clone(),
         placements: placements.collect(),
         noise: Noise {
             command: commands.map(|(i, &first)| spread(first, finals.map(|last| last[i]))).collect(),
-            effort: spread(noise.effort.unwrap_or(1.0), noise.effort_final),
+            effort: vec![spread(noise.effort.unwrap_or(1.0), noise.effort_final); law.ports().effort.len()],
             design: spread(noise.design, noise.design_final),
             // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
             train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),

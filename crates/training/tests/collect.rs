@@ -165,6 +165,7 @@ fn numbers_that_are_none_travel_too() {
             last_obs: vec![0.1],
             last_state: vec![],
             context: vec![],
+            log_prob: 0.0,
             outcome: Some(hwasp_core::Outcome { kind: "ball".into(), success: true }),
         }],
         faults: vec![RolloutError { seed: 1, iteration: 2, episode: 3, step: 4, what: "it left".into() }],

@@ -184,6 +184,7 @@ fn parameters_may_sit_in_different_places() {
         let found = match assembly.policy.spec().placements[i] {
             Placement::Graph => "graph",
             Placement::Action => "action",
+            Placement::Episode => "episode",
             Placement::Fixed(_) | Placement::Built(_) => "fixed",
         };
         assert_eq!(found, expected, "{i}");

@@ -31,9 +31,11 @@ impl Task for Hold {
                 dimension: Dimension::Torque,
                 lo: -MOTOR_LIMIT,
                 hi: MOTOR_LIMIT,
+                direct: true,
             }],
             horizon: 100,
             time_step: TIME_STEP,
+            shaped_by: vec![],
         }
     }
 

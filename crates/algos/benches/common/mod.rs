@@ -20,10 +20,11 @@ fn spec(law: Law, hidden: &[usize], center: Vec<f64>, scale: Vec<f64>, effort: f
         squash: true,
         observation_center: center,
         observation_scale: scale,
+        sees_design: false,
         placements: vec![Placement::Graph; law.design().len()],
         noise: Noise {
             command: vec![0.3.into(); law.ports().command.len()],
-            effort: effort.into(),
+            effort: vec![effort.into(); law.ports().effort.len()],
             design: 0.1.into(),
             train: true,
         },
@@ -55,7 +56,7 @@ pub(crate) fn hand(hidden: &[usize]) -> Arc<HardwarePolicy> {
     let limits = [0.002, 0.0002];
     let motor = |(name, &limit): (&String, &f64)| {
         let (name, dimension) = (name.clone(), Dimension::Length);
-        CommandPort { name, dimension, lo: -limit, hi: limit }
+        CommandPort { name, dimension, lo: -limit, hi: limit, direct: true }
     };
     let env = EnvSpec {
         observation: (0..11).map(|i| port(&format!("seen {i}"))).collect(),
@@ -65,6 +66,7 @@ pub(crate) fn hand(hidden: &[usize]) -> Arc<HardwarePolicy> {
         command: law.ports().command.iter().zip(&limits).map(motor).collect(),
         horizon: 500,
         time_step: 0.05,
+        shaped_by: vec![],
     };
     let spec = spec(law, hidden, vec![0.0; 11], vec![1.0; 11], 0.02);
     Arc::new(HardwarePolicy::new(spec, &env).expect("law and ports fit"))
@@ -97,6 +99,7 @@ pub(crate) fn hand_batch(policy: &HardwarePolicy, params: &[f32], rows: usize) -
             last_obs: obs[..seen].to_vec(),
             last_state: batch.state[batch.state.len() - states..].to_vec(),
             context: vec![],
+            log_prob: 0.0,
             outcome: None,
         });
         batch.obs.extend(obs);

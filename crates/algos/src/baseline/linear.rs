@@ -128,6 +128,7 @@ mod tests {
                 last_obs: vec![0.25],
                 last_state: vec![],
                 context: vec![],
+                log_prob: 0.0,
                 outcome: None,
             }],
             ..Batch::default()
@@ -156,6 +157,7 @@ mod tests {
                 last_obs: vec![0.5],
                 last_state: vec![],
                 context: vec![],
+                log_prob: 0.0,
                 outcome: None,
             }],
             ..Batch::default()
@@ -202,6 +204,7 @@ mod tests {
                 last_obs: vec![0.5],
                 last_state: vec![1.0],
                 context: vec![],
+                log_prob: 0.0,
                 outcome: None,
             }],
             ..Batch::default()

@@ -265,6 +265,7 @@ mod tests {
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![],
+            log_prob: 0.0,
             outcome: None,
         }];
         (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)

@@ -171,6 +171,7 @@ mod tests {
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![0.3 + 0.2 * i as f32],
+            log_prob: 0.0,
             outcome: None,
         };
         let batch = Batch {

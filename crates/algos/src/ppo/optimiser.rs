@@ -5,17 +5,18 @@ use std::sync::Arc;
 use hwasp_core::{Batch, ParamKind, Policy, Purpose, gaussian, stream};
 use rand::seq::SliceRandom;
 
-use super::{METRICS, PpoConfig};
+use super::{PpoConfig, metric_names};
 use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::draws::Draws;
 use crate::learner::LearnError;
 use crate::metrics::Metrics;
 use crate::minibatch::{BLOCK, Minibatch, minibatches};
-use crate::surrogate::Surrogate;
+use crate::surrogate::{RatioSums, Surrogate};
 
 /// A policy's parameters and their optimiser.
 pub(super) struct Optimiser<P: Policy> {
     pub(super) config: PpoConfig,
-    policy: Arc<P>,
+    pub(super) policy: Arc<P>,
     pub(super) params: Vec<f32>,
     pub(super) adam: Adam,
     seed: u64,
@@ -39,6 +40,20 @@ pub(super) struct RowSums {
     pub(super) kl: f64,
     pub(super) clipped: f64,
     pub(super) rows: usize,
+    /// Of the rows' shares of draws, and how many draws these are together.
+    pub(super) draws: RatioSums,
+    pub(super) drawn: f64,
+}
+
+impl RowSums {
+    fn add(&mut self, other: Self) {
+        self.kl += other.kl;
+        self.clipped += other.clipped;
+        self.rows += other.rows;
+        self.draws.kl += other.draws.kl;
+        self.draws.clipped += other.draws.clipped;
+        self.drawn += other.drawn;
+    }
 }
 
 impl<P: Policy> Optimiser<P> {
@@ -81,7 +96,7 @@ impl<P: Policy> Optimiser<P> {
     pub(super) fn update(
         &mut self,
         batch: &Batch,
-        advantage: &[f32],
+        (advantage, draws): (&[f32], &Draws),
         progress: f64,
         iteration: u64,
     ) -> Result<Metrics, LearnError> {
@@ -92,6 +107,7 @@ impl<P: Policy> Optimiser<P> {
         let mut order: Vec<u32> = (0..rows as u32).collect();
         let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
         let (mut kl, mut clip_fraction, mut norms) = (0.0, 0.0, 0.0);
+        let mut of_draws = RatioSums::default();
         let (mut steps, mut epochs) = (0, 0);
         for epoch in 0..self.config.epochs {
             if !whole {
@@ -103,6 +119,7 @@ impl<P: Policy> Optimiser<P> {
                 if !whole || epoch == 0 {
                     let dims = self.dims();
                     self.step.minibatch.gather(batch, advantage, indices, dims);
+                    self.step.minibatch.draws.gather(draws, indices);
                 }
                 let sums = self.step.run(&*self.policy, &self.params, &self.config, progress);
                 norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
@@ -111,14 +128,16 @@ impl<P: Policy> Optimiser<P> {
                     return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
                 }
                 self.adam.step(&mut self.params, &self.step.gradient, &rates);
-                epoch_sums.kl += sums.kl;
-                epoch_sums.clipped += sums.clipped;
-                epoch_sums.rows += sums.rows;
+                epoch_sums.add(sums);
             }
             let n = epoch_sums.rows.max(1) as f64;
             (kl, clip_fraction) = (epoch_sums.kl / n, epoch_sums.clipped / n);
+            if epoch_sums.drawn > 0.0 {
+                let RatioSums { kl, clipped } = epoch_sums.draws;
+                of_draws = RatioSums { kl: kl / epoch_sums.drawn, clipped: clipped / epoch_sums.drawn };
+            }
             epochs = epoch + 1;
-            if self.config.target_kl.is_some_and(|limit| kl > 1.5 * limit) {
+            if self.config.target_kl.is_some_and(|limit| kl.max(of_draws.kl) > 1.5 * limit) {
                 break;
             }
         }
@@ -128,18 +147,23 @@ impl<P: Policy> Optimiser<P> {
             return Err(LearnError::NotFinite { what: "a parameter", iteration });
         }
         let entropy = gaussian::entropy(&self.step.log_std);
-        Ok(Metrics::new(METRICS, vec![kl, entropy, clip_fraction, grad_norm, epochs as f64]))
+        let names = metric_names(&*self.policy);
+        let mut values = vec![kl, entropy, clip_fraction, grad_norm, epochs as f64, of_draws.kl, of_draws.clipped];
+        values.truncate(names.len());
+        Ok(Metrics::new(names, values))
     }
 }
 
 impl<P: Policy> GradientStep<P> {
     /// The gradient of the loss over the minibatch, left in `gradient`:
-    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term).
+    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term). A draw has such a term and an entropy of its
+    /// own, of which each row carries its [share](crate::draws).
     pub(super) fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> RowSums {
         policy.bind(params, &mut self.tape);
         policy.log_std(params, progress, &mut self.log_std);
         self.log_std_gradient.fill(0.0);
-        let mut sums = RowSums { rows: self.minibatch.count, ..RowSums::default() };
+        let (drawn, rows) = (policy.drawn_actions(), self.minibatch.count);
+        let mut sums = RowSums { rows, drawn: self.minibatch.draws.count(), ..RowSums::default() };
         for block in self.minibatch.blocks() {
             let rows = self.minibatch.rows(&block);
             let mean = policy.forward(&rows, &mut self.tape);
@@ -148,18 +172,19 @@ impl<P: Policy> GradientStep<P> {
                 block,
                 mean,
                 log_std: &self.log_std,
+                drawn,
                 clip_ratio: config.clip_ratio as f32,
             };
-            let (kl, clipped) = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
-            sums.kl += kl;
-            sums.clipped += clipped;
+            let [steps, draws] = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
+            sums.add(RowSums { kl: steps.kl, clipped: steps.clipped, draws, ..RowSums::default() });
             policy.vjp(&rows, &self.cotangent, &mut self.tape);
         }
         policy.gradient(&mut self.tape, &mut self.gradient);
         if let Some(range) = policy.log_std_params() {
-            for (to, from) in self.gradient[range].iter_mut().zip(&self.log_std_gradient) {
-                // The entropy of a Gaussian grows by one nat per unit of log-std.
-                *to = from - config.entropy_coef as f32;
+            for (j, (to, from)) in self.gradient[range].iter_mut().zip(&self.log_std_gradient).enumerate() {
+                // The entropy of a Gaussian grows by one nat per unit of log-std, and counts once in a row or once in a draw.
+                let times = if j < drawn { sums.drawn / rows.max(1) as f64 } else { 1.0 };
+                *to = from - (config.entropy_coef * times) as f32;
             }
         }
         sums

@@ -113,6 +113,7 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
                 last_obs: vec![0.0],
                 last_state: vec![],
                 context: vec![],
+                log_prob: 0.0,
                 outcome: None,
             })
             .collect(),

@@ -10,6 +10,7 @@ use crate::minibatch::Minibatch;
 ///
 /// For a diagonal Gaussian it is Jᵀ·M·J with J the derivative of the means and M = diag(1/σ²)/N, and 2 for each log
 /// standard deviation, which no row changes. Both are exact: at the old policy the rest of the second derivative vanishes.
+/// What is drawn once an episode counts once an episode: with the row's share of its draw in M, and 2·draws/N.
 pub(super) struct Fisher<'a, P: Policy> {
     passes: &'a Passes<P>,
     rows: &'a Minibatch,
@@ -33,8 +34,10 @@ impl<'a, P: Policy> Fisher<'a, P> {
         let tangent: Vec<f32> = v.iter().map(|&v| v as f32).collect();
         self.passes.gauss_newton(executor, self.rows, self.params, &tangent, &self.weight, product);
         if let Some(range) = self.passes.policy().log_std_params() {
-            for (to, v) in product[range.clone()].iter_mut().zip(&v[range]) {
-                *to = 2.0 * v;
+            let drawn = self.passes.policy().drawn_actions();
+            let draws = self.rows.draws.count() / self.rows.count.max(1) as f64;
+            for (j, (to, v)) in product[range.clone()].iter_mut().zip(&v[range]).enumerate() {
+                *to = if j < drawn { 2.0 * draws * v } else { 2.0 * v };
             }
         }
     }

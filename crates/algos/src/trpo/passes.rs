@@ -44,6 +44,18 @@ struct JobSums {
     old_mean: Vec<f32>,
     surrogate: f64,
     kl: f64,
+    draw_kl: f64,
+}
+
+/// What parameters are worth beside those that acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Judged {
+    /// -mean(ρ·A), draws included.
+    pub(super) loss: f64,
+    /// KL(old || new), the mean over the rows with draws counted once an episode, nats.
+    pub(super) kl: f64,
+    /// KL(old || new) of what is drawn, the mean over the draws, nats; 0 where nothing is.
+    pub(super) draw_kl: f64,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -136,8 +148,7 @@ impl<P: Policy> Passes<P> {
                     let taken = rows.rows(&block);
                     let mean = self.policy.forward(&taken, &mut worker.tape);
                     kept.copy_from_slice(&mean[..actions * BLOCK]);
-                    let surrogate =
-                        Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
+                    let surrogate = self.surrogate(rows, block, mean, &log_std);
                     job_sums.surrogate += surrogate.sum();
                     surrogate.differentiate(&mut worker.cotangent, &mut job_sums.log_std_gradient);
                     self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
@@ -153,8 +164,20 @@ impl<P: Policy> Passes<P> {
         -sums.map(|job_sums| lock(job_sums).surrogate).sum::<f64>() / rows.count.max(1) as f64
     }
 
-    /// Writes Jᵀ·M·J·v with J the derivative of the means at `params`, M = diag(`weight`) for every row, and v = `tangent`;
-    /// zero for the log standard deviations.
+    /// The surrogate of a block, without a clip.
+    fn surrogate<'a>(
+        &self,
+        minibatch: &'a Minibatch,
+        block: Range<usize>,
+        mean: &'a [f32],
+        log_std: &'a [f32],
+    ) -> Surrogate<'a> {
+        let drawn = self.policy.drawn_actions();
+        Surrogate { minibatch, block, mean, log_std, drawn, clip_ratio: f32::INFINITY }
+    }
+
+    /// Writes Jᵀ·M·J·v with J the derivative of the means at `params`, M = diag(`weight`) for every row, of which draws have
+    /// the row's share, and v = `tangent`; zero for the log standard deviations.
     pub(super) fn gauss_newton(
         &self,
         executor: &dyn Executor,
@@ -178,6 +201,11 @@ impl<P: Policy> Passes<P> {
                         *to = weight * from;
                     }
                 }
+                for to in worker.cotangent.chunks_exact_mut(BLOCK).take(self.policy.drawn_actions()) {
+                    for (to, share) in to.iter_mut().zip(&rows.draws.share[block.clone()]) {
+                        *to *= share;
+                    }
+                }
                 self.policy.vjp(&taken, &worker.cotangent, &mut worker.tape);
             }
             self.policy.gradient(&mut worker.tape, &mut job_sums.gradient);
@@ -185,54 +213,67 @@ impl<P: Policy> Passes<P> {
         self.sum_gradients(rows, product);
     }
 
-    /// The loss at `params`, and the mean of KL(old || new) over the rows, nats, both exact; old is what
-    /// [`gradient`](Self::gradient) last saw, over the same rows.
+    /// Loss and divergence at `params`, exact; old is what [`gradient`](Self::gradient) last saw, over the same rows.
     pub(super) fn evaluate(
         &self,
         executor: &dyn Executor,
         rows: &Minibatch,
         (old, params): (&[f32], &[f32]),
         progress: f64,
-    ) -> (f64, f64) {
-        let actions = self.policy.action_dim();
+    ) -> Judged {
+        let (actions, drawn) = (self.policy.action_dim(), self.policy.drawn_actions());
         let (old, log_std) = (self.log_std(old, progress), self.log_std(params, progress));
         self.each(
             executor,
             rows,
             |tape| self.policy.bind(params, tape),
             |worker, job_sums, blocks| {
-                (job_sums.surrogate, job_sums.kl) = (0.0, 0.0);
+                (job_sums.surrogate, job_sums.kl, job_sums.draw_kl) = (0.0, 0.0, 0.0);
                 let kept = job_sums.old_mean.chunks_exact(actions * BLOCK);
                 for (block, kept) in blocks.zip(kept) {
                     let mean = self.policy.forward(&rows.rows(&block), &mut worker.tape);
-                    job_sums.kl += divergence((kept, &old), (mean, &log_std), block.len());
-                    let surrogate =
-                        Surrogate { minibatch: rows, block, mean, log_std: &log_std, clip_ratio: f32::INFINITY };
-                    job_sums.surrogate += surrogate.sum();
+                    job_sums.kl += divergence((kept, &old), (mean, &log_std), drawn..actions, |_| 1.0, block.len());
+                    if drawn > 0 {
+                        let share = &rows.draws.share[block.clone()];
+                        let share = |r: usize| f64::from(share[r]);
+                        job_sums.draw_kl += divergence((kept, &old), (mean, &log_std), 0..drawn, share, block.len());
+                    }
+                    job_sums.surrogate += self.surrogate(rows, block, mean, &log_std).sum();
                 }
             },
         );
-        let (mut surrogate, mut kl) = (0.0, 0.0);
+        let (mut surrogate, mut kl, mut draw_kl) = (0.0, 0.0, 0.0);
         for job_sums in &self.sums[..jobs(rows).1] {
             let job_sums = lock(job_sums);
             (surrogate, kl) = (surrogate + job_sums.surrogate, kl + job_sums.kl);
+            draw_kl += job_sums.draw_kl;
         }
-        let n = rows.count.max(1) as f64;
-        (-surrogate / n, kl / n)
+        let (n, draws) = (rows.count.max(1) as f64, rows.draws.count());
+        if draws == 0.0 {
+            return Judged { loss: -surrogate / n, kl: kl / n, draw_kl };
+        }
+        Judged { loss: -surrogate / n, kl: (kl + draw_kl) / n, draw_kl: draw_kl / draws }
     }
 }
 
-/// Σ KL(old || new) over the first rows of a block of means `[A × BLOCK]`, nats:
-/// log σ' - log σ + (σ² + (μ - μ')²)/(2σ'²) - ½ for each component.
-fn divergence((old, old_log_std): (&[f32], &[f32]), (new, log_std): (&[f32], &[f32]), rows: usize) -> f64 {
+/// Σ KL(old || new) over the first rows of a block of means `[A × BLOCK]`, each times its weight, nats:
+/// log σ' - log σ + (σ² + (μ - μ')²)/(2σ'²) - ½ for each of the components.
+fn divergence(
+    (old, old_log_std): (&[f32], &[f32]),
+    (new, log_std): (&[f32], &[f32]),
+    components: Range<usize>,
+    weight: impl Fn(usize) -> f64,
+    rows: usize,
+) -> f64 {
     let mut sum = 0.0;
-    for j in 0..log_std.len() {
+    let all: f64 = (0..rows).map(&weight).sum();
+    for j in components {
         let (was, is) = (f64::from(old_log_std[j]), f64::from(log_std[j]));
         let precision = (-2.0 * is).exp();
-        let moved = old[j * BLOCK..][..rows].iter().zip(&new[j * BLOCK..][..rows]);
-        let squares: f64 = moved.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
+        let moved = old[j * BLOCK..][..rows].iter().zip(&new[j * BLOCK..][..rows]).enumerate();
+        let squares: f64 = moved.map(|(r, (a, b))| weight(r) * (f64::from(*a) - f64::from(*b)).powi(2)).sum();
         let spread = is - was + 0.5 * (2.0 * (was - is)).exp_m1();
-        sum += rows as f64 * spread + 0.5 * squares * precision;
+        sum += all * spread + 0.5 * squares * precision;
     }
     sum
 }

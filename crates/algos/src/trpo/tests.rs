@@ -13,22 +13,35 @@ use rand::RngExt;
 use super::*;
 use crate::archive::Archive;
 use crate::baseline::{BaselineConfig, MlpBaselineConfig};
+use crate::gae::{AdvantageConfig, Advantages};
 
 mod model;
 use model::Model;
 
 /// Three springs, one in the action, one in the graph, one fixed, under a small controller.
 fn policy() -> (MassSpring, Arc<HardwarePolicy>) {
-    let problem = MassSpring::stiffness(MassSpringSettings { count: 3, ..MassSpringSettings::default() }).unwrap();
-    let noise = Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.1.into(), train: true };
+    policy_of(vec![Placement::Graph, Placement::Action, Placement::Fixed(5.0)])
+}
+
+/// The same with two more springs that are drawn once an episode.
+fn drawing() -> (MassSpring, Arc<HardwarePolicy>) {
+    let drawn = Placement::Episode;
+    policy_of(vec![Placement::Graph, drawn, Placement::Action, Placement::Fixed(5.0), drawn])
+}
+
+fn policy_of(placements: Vec<Placement>) -> (MassSpring, Arc<HardwarePolicy>) {
+    let count = placements.len();
+    let problem = MassSpring::stiffness(MassSpringSettings { count, ..MassSpringSettings::default() }).unwrap();
+    let noise = Noise { command: vec![0.3.into()], effort: vec![3.0.into()], design: 0.1.into(), train: true };
     let spec = PolicySpec {
         hidden: vec![8, 8],
         activation: Activation::Tanh,
         squash: true,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
+        sees_design: false,
         law: problem.law(),
-        placements: vec![Placement::Graph, Placement::Action, Placement::Fixed(5.0)],
+        placements,
         noise,
     };
     let policy = HardwarePolicy::new(spec, problem.make(None).spec()).unwrap();
@@ -52,7 +65,20 @@ fn minibatch(policy: &HardwarePolicy, batch: &Batch) -> Minibatch {
     let all: Vec<u32> = (0..batch.rows() as u32).collect();
     let dims = (policy.obs_dim(), policy.state_dim(), policy.action_dim());
     rows.gather(batch, &vec![0.0; all.len()], &all, dims);
+    rows.draws.gather(&draws(policy, batch, &[]), &all);
     rows
+}
+
+/// Draws of a batch that were worth so much each; nothing where nothing is said.
+fn draws(policy: &HardwarePolicy, batch: &Batch, worth: &[f64]) -> Draws {
+    let targets = Advantages {
+        advantage: vec![],
+        lambda_return: vec![],
+        discounted_return: vec![],
+        episode_return: vec![],
+        episode_advantage: (0..batch.episodes.len()).map(|e| worth.get(e).copied().unwrap_or(0.0)).collect(),
+    };
+    Draws::new(policy, batch, &targets, &AdvantageConfig { normalize: false, ..AdvantageConfig::default() })
 }
 
 /// H·v without damping, through the passes that an update uses.
@@ -73,8 +99,7 @@ fn norm(v: impl Iterator<Item = f64>) -> f64 {
 /// through controller, law and noise.
 #[test]
 fn fisher_products_are_differences_of_the_gradient_of_the_divergence() {
-    let (problem, policy) = policy();
-    for seed in 0..3 {
+    for (seed, (problem, policy)) in [(0, policy()), (1, policy()), (2, policy()), (0, drawing()), (1, drawing())] {
         let params = policy.init(seed, 1.0);
         let batch = collect(&problem, &policy, &params, 0, 6);
         let model = Model::new(&policy, &batch);
@@ -118,15 +143,29 @@ fn log_standard_deviations_by_hand() {
     }
 }
 
+/// What is drawn once an episode counts once in its 50 rows: 2/50.
+#[test]
+fn log_standard_deviations_of_draws_by_hand() {
+    let (problem, policy) = drawing();
+    let params = policy.init(0, 1.0);
+    let batch = collect(&problem, &policy, &params, 0, 2);
+    let range = policy.log_std_params().unwrap();
+    let mut v = vec![0.0; params.len()];
+    v[range.clone()].fill(1.0);
+    let found = product(&policy, &batch, &params, &v)[range].to_vec();
+    assert!(found[..2].iter().all(|x| (x - 0.04).abs() < 1e-7), "{found:?}");
+    assert_eq!(found[2..], [2.0, 2.0, 2.0]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     /// Wherever it starts and whatever the limit, an update lowers the loss and stays within the divergence, both
     /// judged by the model, or it changes nothing.
     #[test]
     fn an_update_gains_within_the_bound(
-        seed in 0..1000_u64, exponent in -4.0..0.5_f64, left in 0.1..1.0_f64, share in 0.05..1.0_f64,
+        seed in 0..1000_u64, exponent in -4.0..0.5_f64, left in 0.1..1.0_f64, share in 0.05..1.0_f64, draws in any::<bool>(),
     ) {
-        let (problem, policy) = policy();
+        let (problem, policy) = if draws { drawing() } else { policy() };
         let params = policy.init(seed, 1.0);
         // Half way through the decay.
         let (whole, progress) = (10_f64.powf(exponent), 0.5);
@@ -143,7 +182,9 @@ proptest! {
         let kl = model.divergence(&old, &new).0;
         prop_assert!((kl - told("kl")).abs() < 1e-4 * max_kl, "{kl} was told as {}", told("kl"));
         prop_assert!(kl <= max_kl * (1.0 + 1e-4));
-        let gain = model.surrogate(&new, &targets.advantage) - model.surrogate(&old, &targets.advantage);
+        let draws = Draws::new(&*policy, &batch, &targets, &config.advantages);
+        let surrogate = |params: &[f64]| model.surrogate(params, &targets.advantage, &draws.advantage);
+        let gain = surrogate(&new) - surrogate(&old);
         prop_assert!((gain - told("gain")).abs() < 1e-4, "{gain} was told as {}", told("gain"));
         if told("step_fraction") == 0.0 {
             prop_assert_eq!((trpo.params(), told("rejected"), told("tried")), (&params[..], 1.0, 15.0));

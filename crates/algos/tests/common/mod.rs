@@ -25,7 +25,7 @@ pub(crate) struct Case {
 }
 
 fn noise(command: f64, effort: f64, design: f64) -> Noise {
-    Noise { command: vec![command.into()], effort: effort.into(), design: design.into(), train: true }
+    Noise { command: vec![command.into()], effort: vec![effort.into()], design: design.into(), train: true }
 }
 
 impl Case {
@@ -52,6 +52,7 @@ impl Case {
             squash: true,
             observation_center: vec![0.0],
             observation_scale: vec![0.5],
+            sees_design: false,
             law: problem.law(),
             placements: vec![place],
             noise: noise(0.2, 0.2, 0.1),
@@ -80,6 +81,7 @@ impl Case {
             squash: true,
             observation_center: vec![0.1, 0.0],
             observation_scale: vec![0.1, 0.5],
+            sees_design: false,
             law: problem.law(),
             placements: vec![place; problem.settings().count],
             noise: noise(0.3, 3.0, 0.3),

@@ -58,6 +58,22 @@ pub enum EnvFault {
         /// The names that the environment has.
         environment: Vec<String>,
     },
+    /// A command that does nothing.
+    #[error(
+        "nobody reads command `{name}`: it is no port of the law, and `direct = false` says that plant and task do not either"
+    )]
+    Unread {
+        /// The command.
+        name: String,
+    },
+    /// A model made from what is no part of the design.
+    #[error("the world's model is made from `{name}`, but the design has {groups:?}")]
+    Shaped {
+        /// The group that `shaped_by` names.
+        name: String,
+        /// The groups of the law's design.
+        groups: Vec<String>,
+    },
     /// A value that is not finite, or was not written.
     #[error("step {step}: {kind}[{index}] is {value}")]
     NotFinite {

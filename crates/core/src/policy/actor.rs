@@ -20,11 +20,20 @@ pub struct Actor<'p> {
     mean: Vec<f64>,
     /// Actions, row by row.
     action: Vec<f64>,
+    /// Commands that are not in the action, row by row.
+    unsampled: Vec<f64>,
     log_prob: Vec<f32>,
     std: Vec<f64>,
-    /// Σ log σ + A/2·log 2π, the constant part of the log-probability.
+    /// Σ log σ + A/2·log 2π of what is sampled at every step, the constant part of the log-probability.
     log_norm: f64,
+    /// The same of what is drawn once an episode.
+    draw_norm: f64,
     design_mean: Vec<f64>,
+    /// What was drawn for each episode, not clipped, row by row.
+    drawn: Vec<f64>,
+    draw_log_prob: Vec<f32>,
+    /// The whole design: of the episode that was begun last where it is drawn, else as the parameters say.
+    design: Vec<f64>,
     max: usize,
 }
 
@@ -41,6 +50,9 @@ impl<'p> Actor<'p> {
         let mut log_std = vec![0.0; actions];
         policy.log_std(params, progress, &mut log_std);
         let design = policy.design(params);
+        let layout = &policy.composition.layout;
+        let design_mean: Vec<f64> = layout.sampled.iter().map(|&i| design[i]).collect();
+        let draw_norm = gaussian::log_norm(&log_std[..layout.drawn]);
         Self {
             policy,
             controller,
@@ -48,12 +60,35 @@ impl<'p> Actor<'p> {
             columns: vec![0.0; program.column_names().len() * max],
             mean: vec![0.0; actions * max],
             action: vec![0.0; actions * max],
+            unsampled: vec![0.0; layout.unsampled.len() * max],
             log_prob: vec![0.0; max],
             std: log_std.iter().map(|&s| f64::from(s).exp()).collect(),
-            log_norm: gaussian::log_norm(&log_std),
-            design_mean: policy.composition.layout.sampled.iter().map(|&i| design[i]).collect(),
+            log_norm: gaussian::log_norm(&log_std[layout.drawn..]),
+            draw_norm,
+            drawn: design_mean[..layout.drawn].repeat(max),
+            draw_log_prob: vec![(0.0 - draw_norm) as f32; max],
+            design_mean,
+            design,
             max,
         }
+    }
+
+    /// Begins an episode in row `r`: draws what is drawn once an episode, without `noise` its mean. Returns the whole design of
+    /// the episode, SI: what was drawn, within its limits, and of other parameters what the policy has. Rows that were never
+    /// begun have the mean.
+    pub fn begin(&mut self, r: usize, mut noise: Option<&mut Stream>) -> &[f64] {
+        let layout = &self.policy.composition.layout;
+        let mut log_prob = (0.0 - self.draw_norm) as f32;
+        for (j, &i) in layout.sampled[..layout.drawn].iter().enumerate() {
+            let z: f64 = noise.as_deref_mut().map_or(0.0, |stream| StandardNormal.sample(stream));
+            let value = self.design_mean[j] + self.std[j] * z;
+            self.drawn[r * layout.drawn + j] = value;
+            log_prob -= (0.5 * z * z) as f32;
+            let (lo, hi) = self.policy.space().bounds(i);
+            self.design[i] = value.clamp(lo, hi);
+        }
+        self.draw_log_prob[r] = log_prob;
+        &self.design
     }
 
     /// Acts in `rows` episodes at once. `obs` `[rows × obs_dim]` are controller inputs; `state` is
@@ -68,18 +103,30 @@ impl<'p> Actor<'p> {
                 self.columns[j * max + r] = f64::from(row[j]);
             }
         }
+        let unsampled = layout.unsampled.len();
+        for (k, &c) in layout.unsampled.iter().enumerate() {
+            let port = &self.policy.commands[c];
+            for r in 0..rows {
+                let out = self.columns[c * max + r];
+                self.unsampled[r * unsampled + k] = out * (0.5 * (port.hi - port.lo)) + 0.5 * (port.hi + port.lo);
+            }
+        }
         self.columns[commands * max..][..states * max].copy_from_slice(state);
         let actions = layout.len();
         self.log_prob[..rows].fill(-self.log_norm as f32);
-        // Design parameters in the action are drawn first: the law sees the sample.
-        let sampled = layout.sampled.len();
+        // Design parameters in the action come first: the law sees the sample.
+        let (sampled, drawn) = (layout.sampled.len(), layout.drawn);
         let mut noise = noise;
         for r in 0..rows {
             for j in 0..sampled {
-                let z = draw(noise.as_deref_mut(), r);
-                let value = self.design_mean[j] + self.std[j] * z;
+                let value = if j < drawn {
+                    self.drawn[r * drawn + j]
+                } else {
+                    let z = draw(noise.as_deref_mut(), r);
+                    self.log_prob[r] -= (0.5 * z * z) as f32;
+                    self.design_mean[j] + self.std[j] * z
+                };
                 self.action[r * actions + j] = value;
-                self.log_prob[r] -= (0.5 * z * z) as f32;
                 let (lo, hi) = self.policy.space().bounds(layout.sampled[j]);
                 self.columns[(commands + states + j) * max + r] = value.clamp(lo, hi);
             }
@@ -100,9 +147,21 @@ impl<'p> Actor<'p> {
         &self.action[r * actions..][..actions]
     }
 
-    /// The log-probability of that action; of the unclipped sample.
+    /// The commands of episode `r` that are not in the action, as only the law reads them: not limited, in the order of the
+    /// environment's.
+    pub fn unsampled(&self, r: usize) -> &[f64] {
+        let count = self.policy.composition.layout.unsampled.len();
+        &self.unsampled[r * count..][..count]
+    }
+
+    /// The log-probability of that action; of the unclipped sample, and without what is drawn once an episode.
     pub fn log_prob(&self, r: usize) -> f32 {
         self.log_prob[r]
+    }
+
+    /// The log-probability of what was drawn for episode `r`, unclipped; 0 where nothing is.
+    pub fn draw_log_prob(&self, r: usize) -> f32 {
+        self.draw_log_prob[r]
     }
 }
 

@@ -20,6 +20,9 @@ pub struct PolicySpec {
     pub observation_center: Vec<f64>,
     /// See `observation_center`.
     pub observation_scale: Vec<f64>,
+    /// Whether the controller sees the design as well: after the observation, each parameter scaled to [-1, 1] by its limits. It
+    /// sees what was drawn for the episode, and of other parameters what they are at the time. No gradient passes this way.
+    pub sees_design: bool,
     /// The mechanism.
     pub law: Law,
     /// Where each design parameter sits.
@@ -41,6 +44,8 @@ pub(super) struct Composition {
     /// Uniform inputs: `u` of every design parameter that is not fixed. Columns: controller outputs, state, sampled design.
     /// Outputs: the means of the action components.
     pub(super) program: Program,
+    /// Where the law's commands are among the environment's.
+    pub(super) reads: Vec<usize>,
     pub(super) layout: ActionLayout,
     /// The design parameters that are not fixed, in order.
     pub(super) free: Vec<usize>,
@@ -58,34 +63,56 @@ impl PolicySpec {
             let (value, (lo, hi)) = match *place {
                 Placement::Fixed(value) => (value, space.bounds(i)),
                 Placement::Built(value) => (value, (f64::MIN, f64::MAX)),
-                Placement::Graph | Placement::Action => continue,
+                Placement::Graph | Placement::Action | Placement::Episode => continue,
             };
             if !(lo..=hi).contains(&value) {
                 return Err(PlacementError::Outside { name: space.names()[i].clone(), value, lo, hi });
             }
         }
         let names = |ports: &[Port]| ports.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
-        let commands: Vec<_> = env.command.iter().map(|p| p.name.clone()).collect();
-        for (what, law, environment) in [
-            ("command", &law.ports().command, commands),
-            ("state", &law.ports().state, names(&env.state)),
-            ("effort", &law.ports().effort, names(&env.effort)),
-        ] {
+        let reads = law.reads(&env.command).ok_or_else(|| {
+            let environment = env.command.iter().map(|p| p.name.clone()).collect();
+            PlacementError::Ports { what: "command", law: law.ports().command.clone(), environment }
+        })?;
+        for (what, law, environment) in
+            [("state", &law.ports().state, names(&env.state)), ("effort", &law.ports().effort, names(&env.effort))]
+        {
             if *law != environment {
                 return Err(PlacementError::Ports { what, law: law.clone(), environment });
             }
         }
-        if self.noise.command.len() != env.command.len() {
-            return Err(PlacementError::Noise { given: self.noise.command.len(), needed: env.command.len() });
+        if let Some((_, port)) = env.command.iter().enumerate().find(|(c, port)| !port.direct && !reads.contains(c)) {
+            return Err(PlacementError::Unread { name: port.name.clone() });
         }
-        let layout = ActionLayout::new(&self.placements, env.effort.len(), env.command.len());
+        self.check_shaped(env)?;
+        let layout = ActionLayout::new(&self.placements, env.effort.len(), &env.command);
+        let (commands, efforts) = (&self.noise.command, &self.noise.effort);
+        for (what, given, needed) in
+            [("commands", commands.len(), env.command.len()), ("efforts", efforts.len(), env.effort.len())]
+        {
+            // Noise of efforts that are not sampled says nothing.
+            if given != needed && (what == "commands" || layout.efforts > 0) {
+                return Err(PlacementError::Noise { what, given, needed });
+            }
+        }
         let free: Vec<usize> = (0..space.len()).filter(|&i| self.placements[i].kept().is_none()).collect();
-        let mut composition = Composition { program: self.trace(env, &layout, &free), layout, free, noise: Vec::new() };
-        composition.noise = self.component_noise(env, &composition.layout);
-        Ok(composition)
+        let (program, noise) = (self.trace(env, (&layout, &reads), &free), self.component_noise(env, &layout));
+        Ok(Composition { program, reads, layout, free, noise })
     }
 
-    fn trace(&self, env: &EnvSpec, layout: &ActionLayout, free: &[usize]) -> Program {
+    /// Refuses parameters that the world's model is made from where they would change within an episode.
+    fn check_shaped(&self, env: &EnvSpec) -> Result<(), PlacementError> {
+        let space = self.law.design();
+        for (i, &place) in self.placements.iter().enumerate() {
+            let moves = matches!(place, Placement::Graph | Placement::Action);
+            if moves && env.shaped_by.contains(&space.group_of(i).name) {
+                return Err(PlacementError::Shaped { name: space.names()[i].clone(), place });
+            }
+        }
+        Ok(())
+    }
+
+    fn trace(&self, env: &EnvSpec, (layout, reads): (&ActionLayout, &[usize]), free: &[usize]) -> Program {
         let space = self.law.design();
         let names = space.names();
         let uniforms: Vec<String> = free.iter().map(|&i| names[i].clone()).collect();
@@ -117,15 +144,15 @@ impl PolicySpec {
                     design[i] = sample;
                 }
                 // What the motors will do: a squashed output is within their limits anyway.
-                let limited: Vec<Var<'_>> = if self.squash {
-                    command.clone()
-                } else {
-                    command.iter().zip(&env.command).map(|(c, p)| c.clamp(p.lo, p.hi)).collect()
+                let limit = |&c: &usize| {
+                    let port = &env.command[c];
+                    if self.squash { command[c] } else { command[c].clamp(port.lo, port.hi) }
                 };
+                let limited: Vec<Var<'_>> = reads.iter().map(limit).collect();
                 let effort = self.law.effort_traced(&design, &limited, &c[commands..commands + states]);
                 outputs.extend(self.law.ports().effort.iter().cloned().zip(effort));
             }
-            outputs.extend(env.command.iter().map(|p| p.name.clone()).zip(command));
+            outputs.extend(layout.commands.iter().map(|&c| (env.command[c].name.clone(), command[c])));
             outputs
         })
         .holding(&held)
@@ -139,8 +166,11 @@ impl PolicySpec {
             let (lo, hi) = space.bounds(i);
             component(&noise.design, hi - lo)
         });
-        let effort = (0..layout.efforts).map(|_| component(&noise.effort, 1.0));
-        let command = env.command.iter().zip(&noise.command).map(|(port, spread)| component(spread, port.hi - port.lo));
+        let effort = noise.effort[..layout.efforts].iter().map(|spread| component(spread, 1.0));
+        let command = layout.commands.iter().map(|&c| {
+            let port = &env.command[c];
+            component(&noise.command[c], port.hi - port.lo)
+        });
         design.chain(effort).chain(command).collect()
     }
 }

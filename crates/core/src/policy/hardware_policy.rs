@@ -23,8 +23,10 @@ pub struct HardwarePolicy {
     pub(super) composition: Composition,
     groups: Vec<ParamGroup>,
     pub(super) commands: Vec<CommandPort>,
+    observations: usize,
     state_dim: usize,
     context_dim: usize,
+    start_shows_draw: bool,
 }
 
 /// Working memory of a [`HardwarePolicy`].
@@ -48,7 +50,8 @@ impl HardwarePolicy {
     /// Composes a policy for an environment.
     pub fn new(spec: PolicySpec, env: &EnvSpec) -> Result<Self, PlacementError> {
         let composition = spec.compose(env)?;
-        let mut sizes = vec![env.observation.len()];
+        let (observations, space) = (env.observation.len(), spec.law.design());
+        let mut sizes = vec![observations + if spec.sees_design { space.len() } else { 0 }];
         sizes.extend(&spec.hidden);
         sizes.push(env.command.len());
         let output = if spec.squash { Activation::Tanh } else { Activation::Identity };
@@ -66,7 +69,19 @@ impl HardwarePolicy {
         }
         let commands = env.command.clone();
         let (state_dim, context_dim) = (env.state.len(), env.context.len());
-        Ok(Self { spec, controller, composition, groups, commands, state_dim, context_dim })
+        let mut drawn = composition.layout.sampled[..composition.layout.drawn].iter();
+        let start_shows_draw = drawn.any(|&i| spec.sees_design || env.shaped_by.contains(&space.group_of(i).name));
+        Ok(Self {
+            spec,
+            controller,
+            composition,
+            groups,
+            commands,
+            observations,
+            state_dim,
+            context_dim,
+            start_shows_draw,
+        })
     }
 
     /// What it was made of.
@@ -136,11 +151,33 @@ impl HardwarePolicy {
         group.expect("a policy has a group of every kind, if an empty one").range.clone()
     }
 
-    pub(crate) fn action_decoder(&self) -> ActionDecoder {
-        ActionDecoder::new(&self.spec.law, &self.spec.placements, &self.composition.layout, &self.commands)
+    /// Which component of the action a command is; none where the command is not sampled, as only the law reads it.
+    pub fn action_of_command(&self, command: usize) -> Option<usize> {
+        let layout = &self.composition.layout;
+        let place = layout.commands.iter().position(|&c| c == command);
+        place.map(|place| layout.len() - layout.commands.len() + place)
     }
 
-    /// What the controller sees of an observation in SI.
+    pub(crate) fn action_decoder(&self) -> ActionDecoder {
+        let law = (&self.spec.law, &self.composition.reads[..]);
+        ActionDecoder::new(law, &self.spec.placements, &self.composition.layout, &self.commands)
+    }
+
+    /// How many numbers an observation has. The controller may see more: [`see_design`](Self::see_design).
+    pub fn observations(&self) -> usize {
+        self.observations
+    }
+
+    /// Writes what the controller sees of a design in SI: each parameter scaled to [-1, 1] by its limits. This is what follows
+    /// the observation in its input, and nothing for a controller that [does not](PolicySpec::sees_design) see the design.
+    pub fn see_design(&self, design: &[f64], out: &mut [f32]) {
+        for (i, (out, value)) in out.iter_mut().zip(design).enumerate() {
+            let (lo, hi) = self.space().bounds(i);
+            *out = (2.0 * (value - lo) / (hi - lo) - 1.0) as f32;
+        }
+    }
+
+    /// What the controller sees of an observation in SI: the first [`observations`](Self::observations) of its inputs.
     #[inline]
     pub fn normalize(&self, observation: &[f64], out: &mut [f32]) {
         let scaling = self.spec.observation_center.iter().zip(&self.spec.observation_scale);
@@ -223,6 +260,14 @@ impl Policy for HardwarePolicy {
 
     fn context_dim(&self) -> usize {
         self.context_dim
+    }
+
+    fn drawn_actions(&self) -> usize {
+        self.composition.layout.drawn
+    }
+
+    fn start_shows_draw(&self) -> bool {
+        self.start_shows_draw
     }
 
     fn log_std_params(&self) -> Option<Range<usize>> {

@@ -1,7 +1,7 @@
 //! Policies: from parameters to a diagonal Gaussian over actions.
 //!
 //! [`Policy`] is all that a gradient learner knows. [`HardwarePolicy`] is the paper's: a perceptron composed with a
-//! hardware law, each design parameter in the graph, in the action, or fixed.
+//! hardware law, each design parameter in the graph, in the action at every step or once an episode, or fixed.
 
 mod actor;
 mod compose;
@@ -81,6 +81,16 @@ pub trait Policy: Send + Sync {
     fn state_dim(&self) -> usize;
     /// The number of quantities that tell a baseline, and nobody else, what an episode is about.
     fn context_dim(&self) -> usize;
+    /// How many of the action's components, the first ones, are drawn once an episode and held. Their means depend on no row,
+    /// and their probability counts once an episode ([`Episode::log_prob`](crate::Episode::log_prob)), not in every row.
+    fn drawn_actions(&self) -> usize {
+        0
+    }
+    /// Whether what there is to see at the start of an episode tells what was drawn for it. A value of the start is no
+    /// baseline for the draw then: it would take away what the draw is worth.
+    fn start_shows_draw(&self) -> bool {
+        false
+    }
     /// Where the log standard deviations lie in the parameter vector; `None` where they are not trained.
     fn log_std_params(&self) -> Option<Range<usize>>;
     /// The log standard deviations `[A]` at `progress` in [0, 1] of the training.

@@ -40,9 +40,9 @@ impl From<f64> for Spread {
 pub struct Noise {
     /// Of each command, as a fraction of its motor's range.
     pub command: Vec<Spread>,
-    /// Of each effort, SI.
-    pub effort: Spread,
-    /// Of each design parameter in the action, as a fraction of its range.
+    /// Of each effort, SI; needed where efforts are sampled, with a design parameter in the graph.
+    pub effort: Vec<Spread>,
+    /// Of each design parameter that is sampled, at every step or once an episode, as a fraction of its range.
     pub design: Spread,
     /// Whether the log standard deviations are parameters that are trained (on top of a schedule).
     pub train: bool,

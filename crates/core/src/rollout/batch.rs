@@ -23,6 +23,9 @@ pub struct Episode {
     /// What the episode was about and no sensor told, SI.
     #[serde(with = "crate::bits")]
     pub context: Vec<f32>,
+    /// The log-probability of what was drawn once for it; 0 where nothing was.
+    #[serde(with = "crate::bits")]
+    pub log_prob: f32,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
 }
@@ -39,7 +42,7 @@ pub struct Batch {
     /// Actions as sampled, not clipped `[rows × action_dim]`, SI.
     #[serde(with = "crate::bits")]
     pub action: Vec<f32>,
-    /// Their log-probabilities.
+    /// Their log-probabilities, without what was drawn once an episode and is in the action of each of its rows.
     #[serde(with = "crate::bits")]
     pub log_prob: Vec<f32>,
     /// Rewards.

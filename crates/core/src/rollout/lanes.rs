@@ -27,10 +27,13 @@ pub(super) struct Lanes<'p> {
     /// Rows of episode e begin at e·horizon until the end, when gaps are closed. Nothing but rewards where no more is kept.
     batch: Batch,
     ends: Vec<Option<(End, usize)>>,
+    reset: Purpose,
+    /// The log-probability of what was drawn for each episode.
+    drawn: Vec<f32>,
 }
 
 impl<'p> Lanes<'p> {
-    /// Starts the episodes, one in each of the environments.
+    /// One episode in each of the environments.
     pub(super) fn new(
         policy: &'p HardwarePolicy,
         environments: Vec<Box<dyn Environment>>,
@@ -43,12 +46,7 @@ impl<'p> Lanes<'p> {
                 (Purpose::EvaluationReset, Purpose::EvaluationNoise)
             }
         };
-        let mut environments = environments;
         let named = |purpose, index| stream(episodes.seed, purpose, episodes.iteration, index);
-        for (environment, index) in environments.iter_mut().zip(episodes.indices.clone()) {
-            environment.set_progress(episodes.progress);
-            environment.reset(&mut named(reset, index));
-        }
         let count = environments.len();
         let horizon = environments.first().map_or(0, |e| e.spec().horizon);
         let rows = match keep {
@@ -74,10 +72,25 @@ impl<'p> Lanes<'p> {
             keep,
             batch,
             ends: vec![None; count],
+            reset,
+            drawn: vec![0.0; count],
         }
     }
 
-    /// Steps all episodes to their ends.
+    /// Starts an episode. What is drawn once for it is drawn, and its world is told the design before it is put into its start.
+    /// `sees` is what the controller sees of the design.
+    fn start(&mut self, e: usize, actor: &mut Actor<'_>, episodes: &Episodes, sees: &mut [f32]) {
+        let design = actor.begin(e, self.noisy.then_some(&mut self.noise[e]));
+        self.policy.see_design(design, sees);
+        let environment = &mut self.environments[e];
+        environment.set_progress(episodes.progress);
+        environment.set_design(design);
+        let index = episodes.indices.start + e as u64;
+        environment.reset(&mut stream(episodes.seed, self.reset, episodes.iteration, index));
+        self.drawn[e] = actor.draw_log_prob(e);
+    }
+
+    /// Starts all episodes and steps them to their ends.
     ///
     /// # Errors
     /// The one with the lowest index that gave a number that is none.
@@ -85,8 +98,11 @@ impl<'p> Lanes<'p> {
         let count = self.environments.len();
         let (obs_dim, state_dim, action_dim) =
             (self.policy.obs_dim(), self.policy.state_dim(), self.policy.action_dim());
-        let mut seen = vec![0.0; obs_dim];
+        let mut seen = vec![0.0; self.policy.observations()];
         let mut obs = vec![0.0; count * obs_dim];
+        for e in 0..count {
+            self.start(e, actor, episodes, &mut obs[e * obs_dim..(e + 1) * obs_dim][seen.len()..]);
+        }
         // The law reads columns, the plant's law a row.
         let mut columns = vec![0.0; state_dim * count];
         let mut states = vec![0.0; count * state_dim];
@@ -121,7 +137,7 @@ impl<'p> Lanes<'p> {
                 let state = &states[e * state_dim..][..state_dim];
                 let decoder = &mut self.decoders[e];
                 let action = actor.action(e);
-                decoder.decode(action, state);
+                decoder.decode(action, actor.unsampled(e), state);
                 let result = self.environments[e].step(&decoder.effort, &decoder.command);
                 let row = e * self.horizon + step;
                 let log_prob = actor.log_prob(e);
@@ -147,6 +163,8 @@ impl<'p> Lanes<'p> {
                 // What is no number in an observation or an action shows here, too.
                 let not_finite = if !log_prob.is_finite() {
                     Some(format!("the log-probability of the action is {log_prob}"))
+                } else if !self.drawn[e].is_finite() {
+                    Some(format!("the log-probability of the design is {}", self.drawn[e]))
                 } else if !result.reward.is_finite() {
                     Some(format!("the reward is {}", result.reward))
                 } else {
@@ -195,7 +213,7 @@ impl<'p> Lanes<'p> {
         let obs_dim = self.policy.obs_dim();
         let widths = [obs_dim, self.policy.state_dim(), self.policy.action_dim(), 1];
         let mut at = 0;
-        let (mut seen, mut state) = (vec![0.0; obs_dim], vec![0.0; widths[1]]);
+        let (mut seen, mut state) = (vec![0.0; self.policy.observations()], vec![0.0; widths[1]]);
         let mut context = vec![0.0; self.policy.context_dim()];
         self.batch.episodes.reserve_exact(self.ends.len());
         for (e, end) in self.ends.iter().enumerate() {
@@ -215,12 +233,16 @@ impl<'p> Lanes<'p> {
             let mut last_obs = vec![0.0; obs_dim];
             self.environments[e].observe(&mut seen);
             self.policy.normalize(&seen, &mut last_obs);
+            // What it sees of the design it sees in every row.
+            let design = (at + len - 1) * obs_dim + seen.len()..(at + len) * obs_dim;
+            last_obs[seen.len()..].copy_from_slice(&batch.obs[design]);
             self.environments[e].state(&mut state);
             self.environments[e].context(&mut context);
             let single = |values: &[f64]| values.iter().map(|&x| x as f32).collect();
             let (last_state, context) = (single(&state), single(&context));
             let outcome = self.environments[e].outcome();
-            batch.episodes.push(Episode { rows: at..at + len, end, last_obs, last_state, context, outcome });
+            let (rows, log_prob) = (at..at + len, self.drawn[e]);
+            batch.episodes.push(Episode { rows, end, last_obs, last_state, context, log_prob, outcome });
             at += len;
         }
         let batch = &mut self.batch;

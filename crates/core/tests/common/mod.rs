@@ -78,7 +78,8 @@ impl Task for Stay {
 
     fn spec(&self) -> EnvSpec {
         let port = |name: &str| Port { name: name.into(), dimension: Dimension::None };
-        let motor = |name: &str, lo, hi| CommandPort { name: name.into(), dimension: Dimension::None, lo, hi };
+        let motor =
+            |name: &str, lo, hi| CommandPort { name: name.into(), dimension: Dimension::None, lo, hi, direct: true };
         EnvSpec {
             observation: vec![port("x"), port("v"), port("xv")],
             state: vec![port("x"), port("v")],
@@ -87,6 +88,7 @@ impl Task for Stay {
             command: vec![motor("left", -1.0, 1.0), motor("right", -2.0, 4.0)],
             horizon: HORIZON,
             time_step: 0.1,
+            shaped_by: vec![],
         }
     }
 
@@ -125,7 +127,7 @@ pub(crate) fn noise() -> Noise {
     let spread = |std, ratio, from, to| Spread { std, anneal: Some(Anneal { ratio, from, to }) };
     Noise {
         command: vec![spread(0.3, 0.01, 0.25, 0.75), spread(0.2, 0.01, 0.25, 0.75)],
-        effort: 2.0.into(),
+        effort: vec![2.0.into(); 2],
         design: spread(0.4, 0.1, 0.0, 0.5),
         train: true,
     }
@@ -138,6 +140,7 @@ pub(crate) fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
         squash: true,
         observation_center: vec![0.1, 0.0, -0.2],
         observation_scale: vec![0.5, 1.0, 2.0],
+        sees_design: false,
         law: Law::new(Winch::new()),
         placements,
         noise: noise(),
@@ -150,7 +153,7 @@ pub(crate) fn policy(placements: Vec<Placement>) -> Result<HardwarePolicy, Place
 
 /// All in one place, and every kind of mixture.
 pub(crate) fn all_placements() -> Vec<Vec<Placement>> {
-    use Placement::{Action, Fixed, Graph};
+    use Placement::{Action, Episode, Fixed, Graph};
     vec![
         vec![Graph; 4],
         vec![Action; 4],
@@ -158,6 +161,9 @@ pub(crate) fn all_placements() -> Vec<Vec<Placement>> {
         vec![Graph, Action, Action, Graph],
         vec![Action, Graph, Graph, Fixed(4.0)],
         vec![Fixed(1.0), Action, Fixed(3.0), Action],
+        vec![Episode; 4],
+        vec![Action, Graph, Episode, Fixed(4.0)],
+        vec![Fixed(1.0), Episode, Action, Episode],
     ]
 }
 
@@ -174,7 +180,7 @@ pub(crate) fn bits(batch: &Batch) -> Vec<u64> {
     bits.extend(batch.reward.iter().map(|x| x.to_bits()));
     for episode in &batch.episodes {
         bits.extend([episode.rows.start as u64, episode.rows.end as u64, episode.end as u64]);
-        bits.extend(episode.last_obs.iter().map(|x| u64::from(x.to_bits())));
+        bits.extend(episode.last_obs.iter().chain([&episode.log_prob]).map(|x| u64::from(x.to_bits())));
     }
     bits
 }

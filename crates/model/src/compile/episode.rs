@@ -223,7 +223,7 @@ impl Compiler<'_, '_> {
                 self.refuse(&["commands"], format!("nobody limits the command `{name}`"), Some(hint));
                 [-1.0, 1.0]
             });
-            command.push(CommandPort { name: name.clone(), dimension: named(*quantity), lo, hi });
+            command.push(CommandPort { name: name.clone(), dimension: named(*quantity), lo, hi, direct: true });
         }
         let state = law.ports().state.iter().map(|name| Port { name: name.clone(), dimension: Dimension::None });
         let effort =
@@ -236,6 +236,7 @@ impl Compiler<'_, '_> {
             command,
             horizon: HORIZON,
             time_step: self.names.time_step,
+            shaped_by: vec![],
         }
     }
 }

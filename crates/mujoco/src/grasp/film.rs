@@ -82,6 +82,10 @@ impl Environment for Recorder {
         self.robot.spec()
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.robot.set_design(design);
+    }
+
     fn reset(&mut self, rng: &mut Stream) {
         self.robot.reset(rng);
         // Contacts are computed by the first step; before it there are none.

@@ -66,9 +66,11 @@ impl Task for MassSpringTask {
                 dimension,
                 lo: -self.motor_limit,
                 hi: self.motor_limit,
+                direct: true,
             }],
             horizon: self.horizon,
             time_step: self.time_step,
+            shaped_by: vec![],
         }
     }
 

@@ -37,7 +37,7 @@ pub(crate) fn train(
 ) -> Result<Learned, Box<dyn Error>> {
     let noise = Noise {
         command: vec![0.3.into()], // of the motor's range
-        effort: effort_noise.into(),
+        effort: vec![effort_noise.into(); law.ports().effort.len()],
         design: 0.1.into(), // of the parameter's range, where it sits in the action
         train: true,
     };
@@ -47,6 +47,7 @@ pub(crate) fn train(
         squash: true,
         observation_center: center.to_vec(),
         observation_scale: scale.to_vec(),
+        sees_design: false,
         law: law.clone(),
         placements: vec![placement; law.design().len()],
         noise,

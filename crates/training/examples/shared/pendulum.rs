@@ -60,9 +60,11 @@ impl Task for Lift {
                 dimension: Dimension::Torque,
                 lo: -MOTOR_LIMIT,
                 hi: MOTOR_LIMIT,
+                direct: true,
             }],
             horizon: 100,
             time_step: f64::from(SUBSTEPS) * DT,
+            shaped_by: vec![],
         }
     }
 

@@ -36,6 +36,7 @@ mod environment;
 mod names;
 mod parameter;
 mod problem;
+mod reference;
 mod robot;
 mod settings;
 mod source;
@@ -43,4 +44,5 @@ mod texts;
 
 pub use parameter::{Amount, Command, Limits, Parameter};
 pub use problem::ModelProblem;
+pub use reference::reference;
 pub use settings::{Base, ModelSettings, Readings};

@@ -65,7 +65,12 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         sees_design: false,
         law: law.clone(),
         placements,
-        noise: Noise { command: vec![0.3.into()], effort: vec![3.0.into()], design: 0.3.into(), train: true },
+        noise: Noise {
+            command: vec![0.3.into()],
+            effort: vec![3.0.into(); env.effort.len()],
+            design: 0.3.into(),
+            train: true,
+        },
     };
     HardwarePolicy::new(spec, env).unwrap()
 }

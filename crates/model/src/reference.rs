@@ -1,0 +1,46 @@
+//! The reference of names and functions, from what reads them.
+
+use std::fmt::Write;
+
+use hwasp_expr::FUNCTIONS;
+
+use crate::names::attributes;
+
+/// Kinds of elements, with attributes each.
+const KINDS: [&str; 6] = ["joint", "body", "geom", "site", "tendon", "actuator"];
+/// Names without attributes of elements.
+const OTHERS: [(&str, &str); 13] = [
+    ("sensor.NAME", "values of a sensor of the model"),
+    ("contact.A.B", "1 where two geoms touch, else 0"),
+    ("contact.A.B.force", "force between them along the normal, N"),
+    ("contact.A", "1 where a geom touches anything"),
+    ("com.pos`, `com.vel", "centre of mass of everything that moves, m, and its velocity, m/s"),
+    ("energy.kinetic`, `energy.potential", "energies, J"),
+    ("qpos`, `qvel", "all positions and velocities, as the engine has them"),
+    ("command`, `command.NAME", "what was commanded, within its limits"),
+    ("effort`, `effort.TARGET", "what the law gave, `effort.joint.knee`"),
+    ("time`, `dt", "time since the start of the episode, and of a step, s"),
+    ("step", "steps since the start of the episode"),
+    ("progress", "share of training done, 0 to 1; 1 in evaluations"),
+    ("pi", "3.14159…"),
+];
+
+/// Two tables in Markdown: names, then functions.
+pub fn reference() -> String {
+    let mut text = "| name | value |\n|---|---|\n".to_owned();
+    // Writing to a string cannot fail.
+    for kind in KINDS {
+        for (attribute, _, about) in attributes(kind) {
+            let _ = writeln!(text, "| `{kind}.NAME.{attribute}` | {about} |");
+        }
+    }
+    for (name, about) in OTHERS {
+        let _ = writeln!(text, "| `{name}` | {about} |");
+    }
+    text.push_str("| names of your own | of `[task.define]`, `[task.random]` and `[task.design]` |\n");
+    text.push_str("\n| function | value |\n|---|---|\n");
+    for function in FUNCTIONS {
+        let _ = writeln!(text, "| `{}` | {} |", function.usage, function.about);
+    }
+    text
+}

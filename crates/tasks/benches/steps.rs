@@ -47,6 +47,7 @@ fn policy(law: Law, place: Placement, environment: &dyn Environment) -> Hardware
         squash: true,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
+        normalize: None,
         placements: vec![place; law.design().len()],
         law,
         noise: Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.1.into(), train: true },

@@ -58,6 +58,7 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         squash,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
+        normalize: None,
         law: law.clone(),
         placements,
         noise: Noise { command: vec![0.3.into()], effort: 3.0.into(), design: 0.3.into(), train: true },

@@ -20,6 +20,7 @@ fn spec(law: Law, hidden: &[usize], center: Vec<f64>, scale: Vec<f64>, effort: f
         squash: true,
         observation_center: center,
         observation_scale: scale,
+        normalize: None,
         placements: vec![Placement::Graph; law.design().len()],
         noise: Noise {
             command: vec![0.3.into(); law.ports().command.len()],
@@ -94,6 +95,7 @@ pub(crate) fn hand_batch(policy: &HardwarePolicy, params: &[f32], rows: usize) -
         batch.episodes.push(Episode {
             rows: at..at + count,
             end: End::Truncated,
+            cut: false,
             last_obs: obs[..seen].to_vec(),
             last_state: batch.state[batch.state.len() - states..].to_vec(),
             context: vec![],

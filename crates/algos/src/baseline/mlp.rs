@@ -291,6 +291,7 @@ mod tests {
         let episodes = vec![Episode {
             rows: 0..rows,
             end: End::Truncated,
+            cut: false,
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![],

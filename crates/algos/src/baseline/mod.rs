@@ -212,6 +212,7 @@ mod tests {
         let episode = |i: usize| Episode {
             rows: 20 * i..20 * (i + 1),
             end: End::Truncated,
+            cut: false,
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![0.3 + 0.2 * i as f32],

@@ -84,6 +84,7 @@ impl<P: Policy> Optimiser<P> {
         for group in self.policy.groups() {
             let scale = match group.kind {
                 ParamKind::Controller => 1.0,
+                ParamKind::Normalizer => 0.0,
                 ParamKind::Design => config.design_lr_scale,
                 ParamKind::LogStd => config.log_std_lr_scale,
             };
@@ -146,12 +147,11 @@ impl<P: Policy> Optimiser<P> {
             if !update.norms.is_finite() {
                 return Err(LearnError::NotFinite { what: "the policy gradient", iteration: update.iteration });
             }
-        }
             self.adam.step(&mut self.params, &self.step.gradient, &update.rates);
             epoch_sums.kl += sums.kl;
             epoch_sums.clipped += sums.clipped;
             epoch_sums.rows += sums.rows;
-        let grad_norm = norms / f64::from(steps).max(1.0);
+        }
         let n = epoch_sums.rows.max(1) as f64;
         (update.kl, update.clip_fraction) = (epoch_sums.kl / n, epoch_sums.clipped / n);
         update.epochs += 1;
@@ -162,6 +162,7 @@ impl<P: Policy> Optimiser<P> {
     /// What an update has done, after its last epoch.
     pub(super) fn finish(&mut self, update: &Update) -> Result<Metrics, LearnError> {
         let Update { kl, clip_fraction, norms, steps, epochs, .. } = *update;
+        let grad_norm = norms / f64::from(steps).max(1.0);
         self.policy.log_std(&self.params, update.progress, &mut self.step.log_std);
         if !self.params.iter().all(|p| p.is_finite()) {
             return Err(LearnError::NotFinite { what: "a parameter", iteration: update.iteration });

@@ -110,6 +110,7 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
             .map(|i| Episode {
                 rows: i..i + 1,
                 end: End::Terminated,
+                cut: false,
                 last_obs: vec![0.0],
                 last_state: vec![],
                 context: vec![],
@@ -253,7 +254,6 @@ fn the_learning_rate_decays() {
     close(ppo.params()[0], 1.0 - 0.06);
 }
 
-/// The second epoch ends the update where the first has moved the policy too far, and only there.
 /// To nothing at the end: the last update of a training moves no parameter, and breaks none.
 #[test]
 fn a_rate_of_nothing_moves_nothing() {
@@ -297,6 +297,7 @@ fn the_baseline_has_its_epochs_where_those_of_the_policy_end() {
     assert_eq!(after(true), after(false));
 }
 
+/// The second epoch ends the update where the first has moved the policy too far, and only there.
 #[test]
 fn epochs_end_at_the_kl_limit() {
     let epochs = |target_kl| {

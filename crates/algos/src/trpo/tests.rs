@@ -27,6 +27,7 @@ fn policy() -> (MassSpring, Arc<HardwarePolicy>) {
         squash: true,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
+        normalize: None,
         law: problem.law(),
         placements: vec![Placement::Graph, Placement::Action, Placement::Fixed(5.0)],
         noise,

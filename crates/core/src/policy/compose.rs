@@ -20,6 +20,9 @@ pub struct PolicySpec {
     pub observation_center: Vec<f64>,
     /// See `observation_center`.
     pub observation_scale: Vec<f64>,
+    /// Where centre and scale are running statistics, how far from zero what the controller sees may be: they are parameters
+    /// of the policy then ([`ParamKind::Normalizer`](super::ParamKind::Normalizer)) that begin with the two above.
+    pub normalize: Option<f64>,
     /// The mechanism.
     pub law: Law,
     /// Where each design parameter sits.

@@ -138,6 +138,7 @@ pub(crate) fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
         squash: true,
         observation_center: vec![0.1, 0.0, -0.2],
         observation_scale: vec![0.5, 1.0, 2.0],
+        normalize: None,
         law: Law::new(Winch::new()),
         placements,
         noise: noise(),

@@ -47,6 +47,7 @@ pub(crate) fn train(
         squash: true,
         observation_center: center.to_vec(),
         observation_scale: scale.to_vec(),
+        normalize: None,
         law: law.clone(),
         placements: vec![placement; law.design().len()],
         noise,

@@ -103,7 +103,7 @@ impl Scoring<'_> {
         let charged = (indices.end - indices.start) * spec.train.episode_steps as u64;
         let episodes = Episodes { seed: spec.seed, iteration, indices, progress: self.progress, kind };
         let (experiment, steps) = (self.experiment.clone(), Some(spec.train.episode_steps));
-        let request = EpisodesRequest { experiment, stage: Stage::Training, params, episodes, steps };
+        let request = EpisodesRequest { experiment, stage: Stage::Training, params, episodes, steps, lanes: None };
         let scored = if self.seen {
             collector.rows(&request).and_then(|batch| Ok(batch.sound()?)).map(|batch| {
                 let sound = batch.faults.is_empty();

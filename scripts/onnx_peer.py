@@ -64,6 +64,8 @@ observation = samples["observation"].astype("float64")
 told = json.load(open(folder + "controller.json"))
 column = lambda tensor, key: numpy.array([q[key] for q in told[tensor]])
 x = (observation - column("observation", "center")) / column("observation", "scale")
+if "clip" in told["observation"][0]:
+    x = numpy.clip(x, -column("observation", "clip"), column("observation", "clip"))
 x = network(x, [(l["weight"], l["bias"], l["activation"]) for l in told["layers"]])
 limits = column("command", "limits").T
 compare("controller.json", "command", numpy.clip(x * column("command", "scale") + column("command", "offset"), *limits))
@@ -72,7 +74,10 @@ t = {name: tensor.astype("float64") for name, tensor in load_file(folder + "cont
 count = len(contract["network"]["sizes"]) - 1
 kinds = [contract["network"]["hidden_activation"]] * (count - 1) + [contract["network"]["output_activation"]]
 layers = [(t[f"controller.{l}.weight"], t[f"controller.{l}.bias"], kind) for l, kind in enumerate(kinds)]
-x = network((observation - t["observation.center"]) / t["observation.scale"], layers)
+x = (observation - t["observation.center"]) / t["observation.scale"]
+if "observation.lowest" in t:
+    x = numpy.clip(x, t["observation.lowest"], t["observation.highest"])
+x = network(x, layers)
 x = numpy.clip(x * t["command.scale"] + t["command.offset"], t["command.lowest"], t["command.highest"])
 compare("controller.safetensors", "command", x)
 print(json.dumps(rows))

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use hwasp_core::Moments;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -252,6 +253,18 @@ impl<'a> Exchange<'a> {
 
     fn full(&self, name: &str) -> String {
         format!("{}{name}", self.within)
+    }
+}
+
+impl Persist for Moments {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.number("count", &mut self.count)?;
+        with.vector("mean", &mut self.mean)?;
+        with.vector("squares", &mut self.squares)?;
+        let unsound = [("count", &[self.count][..]), ("squares", &self.squares)]
+            .into_iter()
+            .find_map(|(name, values)| Some((name, *values.iter().find(|value| **value < 0.0)?)));
+        unsound.map_or(Ok(()), |(name, value)| Err(with.refuse(name, value, "at least 0")))
     }
 }
 

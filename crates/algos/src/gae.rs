@@ -36,7 +36,8 @@ pub struct Advantages {
     pub advantage: Vec<f32>,
     /// `Â_t + V(s_t)`, the λ-return that a value function may learn.
     pub lambda_return: Vec<f32>,
-    /// `Σ_l γ^l r_{t+l}` to the end of the episode, and nothing beyond.
+    /// `Σ_l γ^l r_{t+l}` to the end of the episode, and nothing beyond; of one that was cut, the value of the state after it is
+    /// what is beyond.
     pub discounted_return: Vec<f32>,
     /// `Σ_t γ^t r_t` of each episode, and beyond it the value of the state after it where that counts.
     pub episode_return: Vec<f64>,
@@ -47,7 +48,8 @@ pub struct Advantages {
 /// The advantages of a batch of whole episodes.
 ///
 /// `values` are V(s) of every row, `last_values` V of the state after each episode's last row. That state counts where an
-/// episode was truncated and `bootstrap_truncated` is set; a terminated episode has no future.
+/// episode was truncated and `bootstrap_truncated` is set, and always where it was [cut](hwasp_core::Episode::cut): that is no
+/// end of the task's. A terminated episode has no future.
 pub fn advantages(
     batch: &Batch,
     values: &[f32],
@@ -64,9 +66,9 @@ pub fn advantages(
         episode_advantage: Vec::with_capacity(batch.episodes.len()),
     };
     for (episode, &last_value) in batch.episodes.iter().zip(last_values) {
-        let bootstrap = bootstrap_truncated && episode.end == End::Truncated;
+        let bootstrap = episode.cut || (bootstrap_truncated && episode.end == End::Truncated);
         let mut next_value = if bootstrap { f64::from(last_value) } else { 0.0 };
-        let (mut advantage, mut total, mut whole) = (0.0, 0.0, next_value);
+        let (mut advantage, mut total, mut whole) = (0.0, if episode.cut { next_value } else { 0.0 }, next_value);
         for t in episode.rows.clone().rev() {
             let (reward, value) = (batch.reward[t], f64::from(values[t]));
             let delta = reward + discount * next_value - value;
@@ -108,6 +110,7 @@ mod tests {
                 Episode {
                     rows: 0..3,
                     end: End::Truncated,
+                    cut: false,
                     last_obs: vec![],
                     last_state: vec![],
                     context: vec![],
@@ -117,6 +120,7 @@ mod tests {
                 Episode {
                     rows: 3..5,
                     end: End::Terminated,
+                    cut: false,
                     last_obs: vec![],
                     last_state: vec![],
                     context: vec![],
@@ -150,6 +154,17 @@ mod tests {
     #[test]
     fn the_authors_convention_ends_at_truncation() {
         let got = advantages(&batch(), &[0.0; 5], &[8.0, 99.0], (0.5, 1.0), false);
+        assert_eq!(got.advantage, got.discounted_return);
+    }
+
+    /// The first episode of the test by hand, cut: its value counts under the authors' convention too, and the discounted return
+    /// goes on with it. Backwards with λ = 1: A2 = 3 + 0.5·8 = 7, A1 = 2 + 0.5·7 = 5.5, A0 = 1 + 0.5·5.5 = 3.75.
+    #[test]
+    fn a_cut_is_no_end() {
+        let mut batch = batch();
+        batch.episodes[0].cut = true;
+        let got = advantages(&batch, &[0.0; 5], &[8.0, 99.0], (0.5, 1.0), false);
+        assert_eq!(got.advantage, [3.75, 5.5, 7.0, 6.5, 5.0]);
         assert_eq!(got.advantage, got.discounted_return);
     }
 

@@ -93,6 +93,7 @@ pub(crate) fn knob(horizon: usize, mean: f64, spread: Spread, sees_design: bool)
         observation_center: vec![0.0],
         observation_scale: vec![1.0],
         sees_design,
+        normalize: None,
         law: Law::from_program(program, DesignSpace::new(vec![group]).unwrap(), ports).unwrap(),
         placements: vec![Placement::Episode],
         noise: Noise {

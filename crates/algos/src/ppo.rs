@@ -11,7 +11,7 @@ use self::optimiser::Optimiser;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, BaselineConfig, InputDims};
 use crate::draws::Draws;
-use crate::gae::AdvantageConfig;
+use crate::gae::{AdvantageConfig, Advantages};
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
 
@@ -33,6 +33,7 @@ use crate::metrics::Metrics;
 /// | `target_kl` | none | epochs end when the KL divergence, of steps or of draws, passes 1.5 times this |
 /// | `normalize_advantages` | true | mean 0, variance 1 over the batch |
 /// | `bootstrap_truncated` | true | value the state after a truncated episode; the paper's toolkit does not |
+/// | `recompute_advantages` | false | advantages of each epoch after the first come from the values as they are by then |
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PpoConfig {
     /// γ, of returns and advantages.
@@ -65,6 +66,9 @@ pub struct PpoConfig {
     pub normalize_advantages: bool,
     /// Whether the state after a truncated episode is valued.
     pub bootstrap_truncated: bool,
+    /// Whether the advantages of each epoch after the first are computed anew, with the baseline that the epoch before has
+    /// fitted; and so is what the baseline learns (Andrychowicz et al. 2021, section 3.5, recommend it).
+    pub recompute_advantages: bool,
 }
 
 impl Default for PpoConfig {
@@ -85,6 +89,7 @@ impl Default for PpoConfig {
             target_kl: None,
             normalize_advantages: true,
             bootstrap_truncated: true,
+            recompute_advantages: false,
         }
     }
 }
@@ -165,14 +170,53 @@ impl<P: Policy> Learner for Ppo<P> {
         let targets = baseline.targets(batch, &config, iteration)?;
         let draws = Draws::new(&*optimiser.policy, batch, &targets, &config);
         let before = (optimiser.params.clone(), optimiser.adam.clone());
-        let result = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
-            optimiser.update(batch, (&targets.advantage, &draws), progress, iteration)
-        });
+        let when = (progress, iteration);
+        let result = if optimiser.config.recompute_advantages {
+            baseline
+                .or_as_before(iteration, |baseline| epoch_by_epoch(executor, optimiser, baseline, batch, targets, when))
+        } else {
+            baseline.fit_beside(executor, (batch, &targets), when, || {
+                optimiser.update(batch, (&targets.advantage, &draws), progress, iteration)
+            })
+        };
         if result.is_err() {
             (optimiser.params, optimiser.adam) = before;
         }
         result
     }
+}
+
+/// An update in which each epoch of the policy has one of the baseline beside it, and advantages are computed anew between
+/// them. The baseline's own number of epochs is spread over those of the policy.
+fn epoch_by_epoch<P: Policy>(
+    executor: &dyn Executor,
+    optimiser: &mut Optimiser<P>,
+    baseline: &mut Baseline,
+    batch: &Batch,
+    mut targets: Advantages,
+    (progress, iteration): (f64, u64),
+) -> Result<Metrics, LearnError> {
+    let config = optimiser.config.advantages();
+    let (own, epochs) = (baseline.epochs(), optimiser.config.epochs);
+    let mut update = optimiser.begin(batch.rows(), progress, iteration);
+    let mut fit = baseline.begin(batch, &targets, progress, iteration);
+    for epoch in 0..epochs {
+        let draws = Draws::new(&*optimiser.policy, batch, &targets, &config);
+        let done = |epochs_done: usize| (own * epochs_done).div_ceil(epochs);
+        let (count, rest) = (done(epoch + 1) - done(epoch), own - done(epoch + 1));
+        let mut goes_on = Ok(false);
+        executor.both(&mut || goes_on = optimiser.epoch(&mut update, batch, (&targets.advantage, &draws)), &mut || {
+            baseline.fit_epochs(&mut fit, batch, &targets, count);
+        });
+        if !goes_on? {
+            // What the limit on the divergence ends is the policy's.
+            baseline.fit_epochs(&mut fit, batch, &targets, rest);
+            break;
+        }
+        targets = baseline.targets(batch, &config, iteration)?;
+    }
+    baseline.check(iteration)?;
+    optimiser.finish(&update)
 }
 
 impl<P: Policy> Persist for Ppo<P> {

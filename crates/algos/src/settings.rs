@@ -46,6 +46,9 @@ impl Settings for PpoConfig {
         fields.positive("target_kl", &mut self.target_kl, 100.0, "ends the epochs beyond; 0: never");
         fields.flag("normalize_advantages", &mut self.normalize_advantages, "centred and scaled per batch");
         fields.flag("bootstrap_truncated", &mut self.bootstrap_truncated, "whether a cut episode has a future");
+        let about =
+            "whether each epoch but the first has the advantages of the values as the epoch before has fitted them";
+        fields.flag("recompute_advantages", &mut self.recompute_advantages, about);
     }
 }
 

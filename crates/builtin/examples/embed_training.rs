@@ -50,12 +50,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let world = &assembly.worlds.deployment;
     let mut env = world.make.make(None);
     env.reset(&mut stream(1, Purpose::EvaluationReset, 0, 0));
-    let mut actor = Actor::new(&policy, assembly.policy.controller_params(&trained.params), 1.0, 1);
+    let controller = assembly.policy.controller_params(&trained.params);
+    let (normalizer, mut actor) = (policy.normalizer(controller), Actor::new(&policy, controller, 1.0, 1));
     let (mut seen, mut input, mut state, mut effort) = ([0.0], [0.0], [0.0], [0.0]);
     loop {
         env.observe(&mut seen);
         env.state(&mut state);
-        policy.normalize(&seen, &mut input);
+        normalizer.apply(&seen, &mut input);
         actor.act(&input, &state, 1, None);
         world.law.effort(&built, actor.action(0), &state, &mut effort);
         if env.step(&effort, actor.action(0)).end.is_some() {

@@ -13,6 +13,7 @@ mod executor;
 pub mod gaussian;
 mod hardware;
 mod law;
+mod moments;
 mod placement;
 mod policy;
 mod rollout;
@@ -28,11 +29,13 @@ pub use environment::{
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Ports};
 pub use law::{Law, LawError};
+pub use moments::Moments;
 pub use placement::{Placement, PlacementError};
 pub use policy::{
-    Actor, Anneal, HardwarePolicy, Noise, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows, Spread,
+    Actor, Anneal, HardwarePolicy, Noise, Normalizer, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape, Rows,
+    Spread,
 };
-pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, RolloutError, Sampler, all_failed};
+pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, LaneSteps, RolloutError, Sampler, all_failed};
 pub use schedule::share_done;
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};

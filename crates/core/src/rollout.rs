@@ -70,6 +70,29 @@ pub struct Episodes {
     pub kind: EpisodeKind,
 }
 
+/// Steps that are shared evenly by lanes. A lane runs one episode after the other until its share is used up, and the last of
+/// them is [cut](Episode::cut) there: that makes as many rows as are asked for, and no step is taken in vain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LaneSteps {
+    /// All lanes there are, at least one.
+    pub lanes: u64,
+    /// Steps of all lanes together.
+    pub steps: u64,
+}
+
+impl LaneSteps {
+    /// The steps of a lane: where they do not divide evenly, the first lanes take one more.
+    pub fn share(&self, lane: u64) -> usize {
+        (self.steps / self.lanes + u64::from(lane < self.steps % self.lanes)) as usize
+    }
+
+    /// The index that names the streams of an episode, which follows `before` others in its lane: another one for each of an
+    /// iteration. The first of a lane has the streams that it would have if episodes were counted.
+    fn episode(&self, lane: u64, before: u64) -> u64 {
+        lane + before * self.lanes
+    }
+}
+
 /// What episodes are for: chooses the streams, and whether there is noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EpisodeKind {

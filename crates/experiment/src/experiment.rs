@@ -180,7 +180,12 @@ fn read_experiment<'r>(
     let task = Task::read(task, catalogue);
     let horizon = task.as_ref().map_or(MOST_STEPS, |task| task.horizon);
     let train = read_table(TrainSettings::new(horizon, reader.sound(&["task.horizon"])), train);
-    let sound = reader.sound(&["train.episodes_per_iteration", "train.episode_steps", "task.horizon"]);
+    let sound = reader.sound(&[
+        "train.episodes_per_iteration",
+        "train.steps_per_iteration",
+        "train.episode_steps",
+        "task.horizon",
+    ]);
     let mut learner = LearnerSettings::new(catalogue.learners(), train.rows());
     let table = |name: &str| {
         let at = tables.iter().position(|(other, _)| other == name);
@@ -194,7 +199,8 @@ fn read_experiment<'r>(
     let ars = read_table(ArsSettings::new(method == Method::ArsRl), ars);
     // The rest cannot be judged without a task.
     let task = task?;
-    let controller = read_table(ControllerSettings::new(task.observations()), controller);
+    let searched_by = (method.searches() && !method.trains_inside()).then(|| method.name());
+    let controller = read_table(ControllerSettings::new(task.observations(), searched_by), controller);
     let design = read_table(DesignSettings::new(method, task.groups()), design);
     let noise = read_table(NoiseSettings::new(&task, &design), noise);
     Some(Experiment {

@@ -58,7 +58,7 @@ fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     let algorithm = field("algorithm", Kind::Names(names), [&default, &learners.listed()], "what improves the policy");
     let train = TrainSettings::new(1000, true);
     let mut tables = vec![
-        ("controller".to_owned(), described(&mut ControllerSettings::new(0))),
+        ("controller".to_owned(), described(&mut ControllerSettings::new(0, None))),
         ("design".to_owned(), described(&mut DesignSettings::new(Method::Hwasp, Vec::new()))),
         ("noise".to_owned(), described(&mut NoiseSettings::of(1, Dimension::Force))),
         ("learner".to_owned(), vec![algorithm]),

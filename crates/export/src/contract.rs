@@ -59,13 +59,15 @@ struct Quantity {
     meaning: Option<String>,
 }
 
-/// What the controller sees; it works with (observation - center)/scale.
+/// What the controller sees; it works with (observation - center)/scale, within plus or minus the clip where there is one.
 #[derive(Debug, Serialize)]
 struct Observed {
     #[serde(flatten)]
     quantity: Quantity,
     center: f64,
     scale: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clip: Option<f64>,
 }
 
 /// What the controller says: the network's output times scale, plus offset, within limits.
@@ -99,7 +101,8 @@ impl Contract {
         let all = |role, ports: &[Port]| -> Vec<Quantity> {
             ports.iter().map(|port| quantity(role, &port.name, port.dimension)).collect()
         };
-        let scaling = policy.observation_center.iter().zip(&policy.observation_scale);
+        let normalizer = deployed.normalizer();
+        let (scaling, clip) = (normalizer.center().iter().zip(normalizer.scale()), normalizer.clip());
         let observed = all(Role::Observation, &env.observation).into_iter().zip(scaling);
         let commanded = env.command.iter().map(|port| Commanded {
             quantity: quantity(Role::Command, &port.name, port.dimension),
@@ -123,7 +126,9 @@ impl Contract {
                 hidden_activation: activation_name(policy.activation),
                 output_activation: activation_name(deployed.output_activation()),
             },
-            observation: observed.map(|(quantity, (&center, &scale))| Observed { quantity, center, scale }).collect(),
+            observation: observed
+                .map(|(quantity, (&center, &scale))| Observed { quantity, center, scale, clip })
+                .collect(),
             state: all(Role::State, &env.state),
             command: commanded.collect(),
             effort: all(Role::Effort, &env.effort),

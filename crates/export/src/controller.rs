@@ -16,6 +16,8 @@ const JSON: &str = "controller.json";
 pub(super) struct Scaling {
     pub(super) center: (&'static str, Vec<f64>),
     pub(super) scale: (&'static str, Vec<f64>),
+    /// The least and the most that the network sees, where there are limits.
+    pub(super) seen: Option<[(&'static str, Vec<f64>); 2]>,
     pub(super) gain: (&'static str, Vec<f64>),
     pub(super) offset: (&'static str, Vec<f64>),
     pub(super) lowest: (&'static str, Vec<f64>),
@@ -23,13 +25,18 @@ pub(super) struct Scaling {
 }
 
 impl Scaling {
-    /// The network sees (observation - center)/scale; its output times gain, plus offset, limited, is the command.
+    /// The network sees (observation - center)/scale, limited where there are limits; its output times gain, plus offset,
+    /// limited, is the command.
     pub(super) fn new(deployed: &Deployed) -> Self {
-        let policy = deployed.policy.spec();
+        let normalizer = deployed.normalizer();
+        let all = |limit: f64| vec![limit; normalizer.center().len()];
         let of_command = |f: fn(f64, f64) -> f64| deployed.env.command.iter().map(|p| f(p.lo, p.hi)).collect();
         Self {
-            center: ("observation.center", policy.observation_center.clone()),
-            scale: ("observation.scale", policy.observation_scale.clone()),
+            center: ("observation.center", normalizer.center().to_vec()),
+            scale: ("observation.scale", normalizer.scale().to_vec()),
+            seen: normalizer
+                .clip()
+                .map(|clip| [("observation.lowest", all(-clip)), ("observation.highest", all(clip))]),
             gain: ("command.scale", of_command(|lo, hi| 0.5 * (hi - lo))),
             offset: ("command.offset", of_command(|lo, hi| 0.5 * (hi + lo))),
             lowest: ("command.lowest", of_command(|lo, _| lo)),
@@ -51,8 +58,9 @@ pub(super) fn safetensors(deployed: &Deployed, contract: &Contract) -> Result<Ex
         pieces.push(Piece::f32(weight, vec![layer.inputs, layer.outputs], layer.weight));
         pieces.push(Piece::f32(bias, vec![layer.outputs], layer.bias));
     }
-    let Scaling { center, scale, gain, offset, lowest, highest } = Scaling::new(deployed);
-    for (name, values) in [center, scale, gain, offset, lowest, highest] {
+    let Scaling { center, scale, seen, gain, offset, lowest, highest } = Scaling::new(deployed);
+    let scaling = [center, scale].into_iter().chain(seen.into_iter().flatten()).chain([gain, offset, lowest, highest]);
+    for (name, values) in scaling {
         let values: Vec<f32> = values.iter().map(|&v| v as f32).collect();
         pieces.push(Piece::f32(name.to_owned(), vec![values.len()], &values));
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Actor, EnvSpec, HardwarePolicy};
+use hwasp_core::{Actor, EnvSpec, HardwarePolicy, Normalizer};
 use hwasp_diff::Activation;
 use hwasp_experiment::Experiment;
 use hwasp_training::{AssembleError, Assembly, World};
@@ -17,7 +17,7 @@ pub(super) struct Deployed {
     pub(super) world: World,
     pub(super) env: EnvSpec,
     pub(super) policy: Arc<HardwarePolicy>,
-    /// The controller's parameters.
+    /// The controller's parameters: its layers', and centre and scale of what it sees where they are among them.
     pub(super) params: Vec<f32>,
     /// SI, as built.
     pub(super) design: Vec<f64>,
@@ -47,6 +47,11 @@ impl Deployed {
         })
     }
 
+    /// What the controller sees of an observation.
+    pub(super) fn normalizer(&self) -> Normalizer {
+        self.policy.normalizer(&self.params)
+    }
+
     /// What the last layer does to its sums.
     pub(super) fn output_activation(&self) -> Activation {
         if self.policy.spec().squash { Activation::Tanh } else { Activation::Identity }
@@ -73,6 +78,7 @@ impl Deployed {
     pub(super) fn act(&self, observations: &[f32], states: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (seen, state_dim) = (self.env.observation.len(), self.env.state.len());
         let mut actor = Actor::new(&self.policy, &self.params, 1.0, BLOCK);
+        let normalizer = self.normalizer();
         let (mut commands, mut efforts) = (Vec::new(), Vec::new());
         let mut inputs = vec![0.0_f32; BLOCK * seen];
         let mut columns = vec![0.0; BLOCK * state_dim];
@@ -81,7 +87,7 @@ impl Deployed {
             let rows = observations.len() / seen;
             for (seen, input) in observations.chunks_exact(seen).zip(inputs.chunks_exact_mut(seen)) {
                 let seen: Vec<f64> = seen.iter().map(|&x| f64::from(x)).collect();
-                self.policy.normalize(&seen, input);
+                normalizer.apply(&seen, input);
             }
             for (r, state) in states.chunks_exact(state_dim).enumerate() {
                 for (s, &x) in state.iter().enumerate() {

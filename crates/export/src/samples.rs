@@ -24,8 +24,8 @@ const EPISODES: u64 = 8;
 pub(super) fn samples(deployed: &Deployed, count: usize) -> Result<ExportFile, ExportError> {
     let seed = deployed.spec.train.evaluation_seed;
     let mut random = stream(seed, Purpose::Samples, 0, 0);
-    let policy = deployed.policy.spec();
-    let scaling: Vec<_> = policy.observation_center.iter().zip(&policy.observation_scale).collect();
+    let normalizer = deployed.normalizer();
+    let scaling: Vec<_> = normalizer.center().iter().zip(normalizer.scale()).collect();
     let draw = |random: &mut Stream| {
         let uniform = |(&center, &scale): (&f64, &f64), x: f64| (center + SCALES * scale * (2.0 * x - 1.0)) as f32;
         scaling.iter().map(|&scaling| uniform(scaling, random.random())).collect::<Vec<f32>>()

@@ -49,23 +49,23 @@ fn moves(run: &Run) -> Result<Markup, RunError> {
     let params = saved.params()?;
     let batch = first_episode(saved.assembly(), &params, run.summary.evaluation.seed);
     Ok(match batch {
-        Ok(batch) => curves(run, saved.assembly(), &batch),
+        Ok(batch) => curves(run, saved.assembly(), &params, &batch),
         Err(error) => failed(&error),
     })
 }
 
-fn curves(run: &Run, assembly: &Assembly, batch: &Batch) -> Markup {
+fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Markup {
     let seed = run.summary.evaluation.seed;
     let environment = assembly.worlds.deployment.make.make(None);
     let (seen, given) = (&environment.spec().observation, &environment.spec().command);
-    let controller = &run.spec.controller;
+    let normalizer = assembly.policy.normalizer(params);
     let column = |values: &[f32], of: usize, i: usize| -> Vec<f64> {
         values.iter().skip(i).step_by(of.max(1)).map(|&value| f64::from(value)).collect()
     };
     let mut traces = Vec::new();
     for (i, port) in seen.iter().enumerate() {
-        // The batch has what the controller reads: centred and scaled.
-        let (centre, scale) = (controller.observation_center[i], controller.observation_scale[i]);
+        // The batch has what the controller reads: centred and scaled, and within its clip where it has one.
+        let (centre, scale) = (normalizer.center()[i], normalizer.scale()[i]);
         let values: Vec<f64> = column(&batch.obs, seen.len(), i).iter().map(|value| centre + scale * value).collect();
         traces.push((format!("observed: {}", spaced(&port.name)), port.dimension.si(), values));
     }

@@ -26,7 +26,7 @@ pub enum PolicyFileError {
         /// What it should have.
         needed: String,
     },
-    /// A parameter is no number.
+    /// A parameter is no number, or a scale is not positive.
     #[error("tensor `{name}` holds {value} at position {at}")]
     NotFinite {
         /// Its name.
@@ -38,6 +38,10 @@ pub enum PolicyFileError {
     },
 }
 
+/// Running mean and deviation of the observations, SI, where the controller sees them so.
+const CENTER: &str = "observation.center";
+const SCALE: &str = "observation.scale";
+
 /// The names and shapes of a policy's tensors, in the order of its parameter vector.
 fn tensors(policy: &HardwarePolicy) -> Vec<(String, Vec<usize>)> {
     let mut names = Vec::new();
@@ -48,6 +52,11 @@ fn tensors(policy: &HardwarePolicy) -> Vec<(String, Vec<usize>)> {
     for group in policy.groups().iter().filter(|g| g.kind != ParamKind::Controller && !g.range.is_empty()) {
         // What is stored of the design is the unbounded stand-in of each free parameter; design.toml has the SI values.
         let name = if group.kind == ParamKind::Design { "design.logit" } else { group.kind.name() };
+        if group.kind == ParamKind::Normalizer {
+            let half = group.range.len() / 2;
+            names.extend([CENTER, SCALE].map(|name| (name.to_owned(), vec![half])));
+            continue;
+        }
         names.push((name.to_owned(), vec![group.range.len()]));
     }
     names
@@ -82,7 +91,8 @@ pub fn read_policy(policy: &HardwarePolicy, bytes: &[u8]) -> Result<Vec<f32>, Po
         }
         for (at, bytes) in tensor.data().chunks_exact(4).enumerate() {
             let value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-            if !value.is_finite() {
+            // Nothing can be divided by a scale of zero.
+            if !value.is_finite() || (name == SCALE && value <= 0.0) {
                 return Err(PolicyFileError::NotFinite { name, value, at });
             }
             params.push(value);

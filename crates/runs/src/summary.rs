@@ -50,10 +50,13 @@ pub struct Summary {
     pub wall_s: f64,
     /// Real simulator steps per second of training, updates included.
     pub steps_per_s: f64,
-    /// Mean discounted return of the noisy training episodes over the last 11 iterations.
-    pub training_discounted_return: f64,
+    /// Mean discounted return of the noisy training episodes over the last 11 iterations in which some came to their end; none
+    /// where none ever did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub training_discounted_return: Option<f64>,
     /// The same, undiscounted.
-    pub training_return: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub training_return: Option<f64>,
     /// Candidates of a search that failed and ranked last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_candidates: Option<u64>,
@@ -83,8 +86,8 @@ impl Summary {
             env_steps: trained.env_steps,
             wall_s: trained.wall_s,
             steps_per_s: trained.env_steps as f64 / trained.wall_s.max(f64::MIN_POSITIVE),
-            training_discounted_return: trained.training_discounted_return,
-            training_return: trained.training_return,
+            training_discounted_return: known(trained.training_discounted_return),
+            training_return: known(trained.training_return),
             failed_candidates: trained.failed_candidates,
             first_failure: trained.first_failure.clone(),
             discarded_episodes: trained.discarded_episodes,
@@ -92,6 +95,11 @@ impl Summary {
             design: design_summary(assembly, &trained.params),
         }
     }
+}
+
+/// A figure, unless it is NaN, for which JSON has no text.
+fn known(figure: f64) -> Option<f64> {
+    (!figure.is_nan()).then_some(figure)
 }
 
 /// SHA-256 of what an experiment file says: of its values, whatever its comments, its layout and the order of its keys. None

@@ -101,6 +101,31 @@ fn what_is_no_number_is_refused_where_it_stands() {
     }
 }
 
+/// Running statistics of the observations: behind the controller, and with a scale that can be divided by.
+#[test]
+fn running_statistics_come_back_and_scales_are_positive() {
+    let assembly = assembly(
+        "hwasp",
+        &[
+            ("controller.observation_center", "[0.0, 0.0]"),
+            ("controller.observation_scale", "[1.0, 1.0]"),
+            ("controller.normalize_observations", "true"),
+        ],
+    );
+    let range = assembly.policy.normalizer_params();
+    let mut params = assembly.init();
+    params[range.clone()].copy_from_slice(&[0.25, -3.0, 0.5, 2.0]);
+    let bytes = write_policy(&assembly.policy, &params).unwrap();
+    let file = SafeTensors::deserialize(&bytes).unwrap();
+    for (name, values) in [("observation.center", [0.25_f32, -3.0]), ("observation.scale", [0.5, 2.0])] {
+        assert_eq!(file.tensor(name).unwrap().data(), values.map(f32::to_le_bytes).as_flattened(), "{name}");
+    }
+    assert_eq!(bits(&read_policy(&assembly.policy, &bytes).unwrap()), bits(&params));
+    params[range.end - 1] = 0.0;
+    let error = read_policy(&assembly.policy, &write_policy(&assembly.policy, &params).unwrap()).unwrap_err();
+    assert_eq!(error.to_string(), "tensor `observation.scale` holds 0 at position 1");
+}
+
 #[test]
 fn every_cut_is_refused() {
     let assembly = small();

@@ -48,6 +48,7 @@ fn policy(law: Law, place: Placement, environment: &dyn Environment) -> Hardware
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,
+        normalize: None,
         placements: vec![place; law.design().len()],
         law,
         noise: Noise { command: vec![0.3.into()], effort: vec![3.0.into()], design: 0.1.into(), train: true },

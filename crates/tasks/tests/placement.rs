@@ -63,6 +63,7 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,
+        normalize: None,
         law: law.clone(),
         placements,
         noise: Noise {

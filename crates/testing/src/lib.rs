@@ -17,8 +17,21 @@ pub type Settings = &'static [(&'static str, &'static str)];
 
 const MLP: &str = "mlp";
 
+/// Everything that robots need which nobody has scaled by hand, and iterations of 1000 steps in 7 lanes.
+pub const UNSCALED: Settings = &[
+    ("controller.observation_center", "[0.0]"),
+    ("controller.observation_scale", "[1.0]"),
+    ("controller.normalize_observations", "true"),
+    ("train.reward_scaling", "true"),
+    ("train.steps_per_iteration", "1000"),
+    ("train.episodes_per_iteration", "7"),
+    ("ppo.recompute_advantages", "true"),
+    ("baseline.kind", MLP),
+    ("cmaes.popsize", "4"),
+];
+
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 9] = [
+pub const KINDS: [(&str, Settings); 11] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("hwasp", &[("learner.algorithm", "trpo"), ("baseline.kind", MLP)]),
@@ -28,6 +41,8 @@ pub const KINDS: [(&str, Settings); 9] = [
     ("cmaes-rl", &[("cmaes.popsize", "5"), ("train.env_steps", "24000")]),
     ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000"), ("learner.algorithm", "trpo")]),
     ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
+    ("hwasp", UNSCALED),
+    ("cmaes-rl", UNSCALED),
 ];
 
 /// The problems and learners that come with the program.

@@ -13,8 +13,8 @@ use hwasp_experiment::{ActivationKind, Experiment, Method, Place, total_name};
 use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
-pub(crate) use self::budget::FINAL_EPISODES;
 pub use self::budget::Piece;
+pub(crate) use self::budget::{FINAL_EPISODES, Portion};
 
 /// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
 const MOST_CORRELATED: usize = 5000;
@@ -234,6 +234,7 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
         observation_center: spec.controller.observation_center.clone(),
         observation_scale: spec.controller.observation_scale.clone(),
         sees_design: false,
+        normalize: spec.controller.normalize_observations.then_some(spec.controller.observation_clip),
         law: law.clone(),
         placements: placements.collect(),
         noise: Noise {

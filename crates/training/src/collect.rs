@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use hwasp_algos::Archive;
-use hwasp_core::{Batch, EpisodeResult, Episodes, RolloutError, bits};
+use hwasp_core::{Batch, EpisodeResult, Episodes, LaneSteps, RolloutError, bits};
 use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -176,6 +176,10 @@ pub struct EpisodesRequest {
     pub episodes: Episodes,
     /// The steps of an episode, where not as many as the world has.
     pub steps: Option<usize>,
+    /// Where steps are counted, and not episodes: what lanes share. The indices are those of lanes then, and rows are what can be
+    /// asked for.
+    #[serde(default)]
+    pub lanes: Option<LaneSteps>,
 }
 
 impl EpisodesRequest {

@@ -91,7 +91,8 @@ pub(crate) fn rollouts(
 ) -> Result<Vec<EpisodeAnswer>, EvaluateError> {
     let params = assembly.policy.controller_params(params).to_vec();
     let episodes = held_out(seed, 0..episodes);
-    let results = collector.results(&EpisodesRequest { experiment, stage, params, episodes, steps: None })?;
+    let request = EpisodesRequest { experiment, stage, params, episodes, steps: None, lanes: None };
+    let results = collector.results(&request)?;
     all_failed(&results).map_or(Ok(results), |first| Err(first.into()))
 }
 

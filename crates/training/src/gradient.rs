@@ -3,15 +3,16 @@
 use std::ops::Range;
 
 use hwasp_algos::{Archive, Exchange, Learner, Metrics, Persist, StateError};
-use hwasp_core::{Batch, EpisodeKind, Episodes, Executor};
+use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, LaneSteps};
 use hwasp_experiment::Experiment;
 
-use crate::assemble::Assembly;
+use crate::assemble::{Assembly, Portion};
 use crate::checkpoint::Checkpoint;
 use crate::collect::{Collector, EpisodesRequest, ExperimentText, Stage};
 use crate::error::TrainError;
 use crate::learned::{Clock, Learned, LoopContext};
 use crate::observer::{Event, FailedIteration};
+use crate::running::Running;
 
 /// Iterations in a row in which the physics of most episodes may fail.
 const MOST_FAULTY_ITERATIONS: u64 = 3;
@@ -21,12 +22,14 @@ pub(crate) struct Gradient<'a> {
     assembly: &'a Assembly,
     learner: Box<dyn Learner>,
     pub(crate) learned: Learned,
+    running: Running,
 }
 
 impl Persist for Gradient<'_> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
         with.part("loop", &mut self.learned)?;
-        with.part("learner", &mut *self.learner)
+        with.part("learner", &mut *self.learner)?;
+        with.part("running", &mut self.running)
     }
 }
 
@@ -45,7 +48,7 @@ pub(crate) fn gradient(
         totals: &assembly.total_names(),
     })?;
     run.clock = Clock::start(state.learned.wall_s);
-    while state.episodes() > 0 {
+    while state.portion().is_some() {
         if (run.stopped)() {
             run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
             return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
@@ -73,11 +76,26 @@ impl<'a> Gradient<'a> {
 
     /// From the beginning, with these parameters.
     pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
-        Self { assembly, learner: assembly.learner(params), learned: Learned::default() }
+        Self {
+            assembly,
+            learner: assembly.learner(params),
+            learned: Learned::default(),
+            running: Running::new(assembly),
+        }
     }
 
+    /// From the beginning, with the parameters of a policy that was trained for so many steps.
+    pub(crate) fn further(assembly: &'a Assembly, params: Vec<f32>, env_steps: u64) -> Self {
+        let mut state = Self::beginning(assembly, params);
+        state.running.go_on(&state.learner.params()[assembly.policy.normalizer_params()], env_steps);
+        state
+    }
+
+    /// The policy's parameters: the learner's, and the statistics so far.
     pub(crate) fn params(&self) -> Vec<f32> {
-        self.learner.params().to_vec()
+        let mut params = self.learner.params().to_vec();
+        self.running.publish(&mut params[self.assembly.policy.normalizer_params()]);
+        params
     }
 
     pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, StateError> {
@@ -87,14 +105,14 @@ impl<'a> Gradient<'a> {
 
     fn iterate(&mut self, run: &mut LoopContext<'_>) -> Result<(), TrainError> {
         let progress = self.progress();
-        let batch = self.collect(run.collector, &run.experiment).or_else(|error| self.fail(None, error, run))?;
-        let update = self.learn(run.executor, &batch, progress);
+        let mut batch = self.collect(run.collector, &run.experiment).or_else(|error| self.fail(None, error, run))?;
+        let update = self.learn(run.executor, &mut batch, progress);
         let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
         self.learned.env_steps += batch.env_steps();
         self.learned.discarded_episodes += batch.faults.len() as u64;
         let policy = &self.assembly.policy;
         let totals = policy.space().totals(&policy.design(self.learner.params()));
-        let returns = mean_returns(&batch, self.assembly.experiment().discount());
+        let returns = whole_returns(&batch, self.assembly.experiment().discount());
         Ok(self.learned.record(returns, update.values().to_vec(), totals, run)?)
     }
 
@@ -115,18 +133,25 @@ impl<'a> Gradient<'a> {
         self.assembly.experiment().train.progress(self.learned.env_steps)
     }
 
-    /// How many episodes the iteration at hand begins with, 0 where the budget is spent.
-    fn episodes(&self) -> u64 {
-        self.assembly.iteration_episodes(self.learned.env_steps)
+    /// What the iteration at hand takes; none where the budget is spent.
+    fn portion(&self) -> Option<Portion> {
+        self.assembly.portion(self.learned.env_steps)
     }
 
     /// The episodes of the iteration at hand. The last one goes on with further episodes, by index, as long as the budget holds a
     /// whole one: how many depends on the steps of those before alone, and so on nothing that a resume could change.
     fn collect(&self, collector: &dyn Collector, experiment: &ExperimentText) -> Result<Batch, TrainError> {
+        let first = match self.portion() {
+            None => 0,
+            Some(Portion::Episodes(episodes)) => episodes,
+            Some(Portion::Steps(steps)) => {
+                return Ok(collector.rows(&self.request(experiment, 0..steps.lanes, Some(steps)))?.sound()?);
+            }
+        };
         let mut parts = Vec::new();
-        let (mut taken, mut asked, mut more) = (self.learned.env_steps, 0, self.episodes());
+        let (mut taken, mut asked, mut more) = (self.learned.env_steps, 0, first);
         while more > 0 {
-            let part = collector.rows(&self.request(experiment, asked..asked + more))?;
+            let part = collector.rows(&self.request(experiment, asked..asked + more, None))?;
             asked += more;
             taken += part.env_steps();
             more = self.assembly.further_episodes(taken);
@@ -135,8 +160,8 @@ impl<'a> Gradient<'a> {
         Ok(Batch::join(parts).sound()?)
     }
 
-    /// Asks for episodes of the iteration at hand.
-    fn request(&self, experiment: &ExperimentText, indices: Range<u64>) -> EpisodesRequest {
+    /// Asks for episodes of the iteration at hand, or for the steps of its lanes.
+    fn request(&self, experiment: &ExperimentText, indices: Range<u64>, lanes: Option<LaneSteps>) -> EpisodesRequest {
         let Experiment { seed, train, .. } = self.assembly.experiment();
         EpisodesRequest {
             experiment: experiment.clone(),
@@ -150,11 +175,12 @@ impl<'a> Gradient<'a> {
                 kind: EpisodeKind::Training,
             },
             steps: Some(train.episode_steps),
+            lanes,
         }
     }
 
     /// The update of the iteration at hand.
-    fn learn(&mut self, executor: &dyn Executor, batch: &Batch, progress: f64) -> Result<Metrics, TrainError> {
+    fn learn(&mut self, executor: &dyn Executor, batch: &mut Batch, progress: f64) -> Result<Metrics, TrainError> {
         let asked = batch.episodes.len() + batch.faults.len();
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
@@ -168,8 +194,17 @@ impl<'a> Gradient<'a> {
                 first: first.clone(),
             });
         }
-        let update = self.learner.update(executor, batch, progress, self.learned.iterations)?;
-        self.learned.faulty_iterations = in_a_row;
+        let mut running = self.running.clone();
+        running.take(batch);
+        // The learner's rewards may be others than those of the task, which whoever looks at the batch wants to see.
+        let scaled = running.rewards(batch);
+        let rewards = scaled.map(|scaled| std::mem::replace(&mut batch.reward, scaled));
+        let update = self.learner.update(executor, batch, progress, self.learned.iterations);
+        if let Some(rewards) = rewards {
+            batch.reward = rewards;
+        }
+        let update = update?;
+        (self.running, self.learned.faulty_iterations) = (running, in_a_row);
         Ok(update)
     }
 }
@@ -178,6 +213,20 @@ impl<'a> Gradient<'a> {
 fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
     let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
     (mean(batch.returns(discount)), mean(batch.returns(1.0)))
+}
+
+/// The same of those that came to an end of their own; none where there is no such episode.
+fn whole_returns(batch: &Batch, discount: f64) -> Option<(f64, f64)> {
+    let cut = batch.episodes.iter().filter(|episode| episode.cut).count();
+    if cut == 0 {
+        return Some(mean_returns(batch, discount));
+    }
+    let whole = (batch.episodes.len() - cut) as f64;
+    let mean = |returns: Vec<f64>| {
+        let whole_ones = returns.iter().zip(&batch.episodes).filter(|(_, episode)| !episode.cut);
+        whole_ones.map(|(total, _)| total).sum::<f64>() / whole
+    };
+    (whole > 0.0).then(|| (mean(batch.returns(discount)), mean(batch.returns(1.0))))
 }
 
 /// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
@@ -194,8 +243,8 @@ pub(crate) fn repeat_by(
     let mut state = Gradient::new(assembly, Some(from))?;
     let progress = state.progress();
     Ok(match state.collect(collector, experiment) {
-        Ok(batch) => {
-            let outcome = state.learn(executor, &batch, progress);
+        Ok(mut batch) => {
+            let outcome = state.learn(executor, &mut batch, progress);
             (Some(batch), outcome)
         }
         Err(error) => (None, Err(error)),

@@ -63,20 +63,22 @@ pub(crate) struct Learned {
     pub(crate) faulty_iterations: u64,
     /// Time it took, s.
     pub(crate) wall_s: f64,
-    /// Mean discounted and undiscounted returns of the last iterations.
+    /// Mean discounted and undiscounted returns of the last iterations that have some.
     recent: VecDeque<(f64, f64)>,
 }
 
 impl Learned {
-    /// Counts an iteration whose steps are counted already, and hands its row on; a search has no metrics of a learner.
+    /// Counts an iteration whose steps are counted already, and hands its row on; a search has no metrics of a learner. There
+    /// are no returns where no episode came to its end.
     pub(crate) fn record(
         &mut self,
-        (discounted_return, undiscounted_return): (f64, f64),
+        returns: Option<(f64, f64)>,
         learner: Vec<f64>,
         design_totals: Vec<f64>,
         run: &mut LoopContext<'_>,
     ) -> Result<(), ObserverError> {
-        self.recent.push_back((discounted_return, undiscounted_return));
+        self.recent.extend(returns);
+        let (discounted_return, undiscounted_return) = returns.unwrap_or((f64::NAN, f64::NAN));
         if self.recent.len() > TRAILING {
             self.recent.pop_front();
         }
@@ -94,10 +96,9 @@ impl Learned {
         Ok(())
     }
 
-    /// The mean discounted and undiscounted returns of the last [`TRAILING`] iterations.
+    /// The mean discounted and undiscounted returns of the last [`TRAILING`] iterations that have some; NaN where none has.
     pub(crate) fn trailing(&self) -> (f64, f64) {
-        let mean =
-            |pick: fn(&(f64, f64)) -> f64| self.recent.iter().map(pick).sum::<f64>() / self.recent.len().max(1) as f64;
+        let mean = |pick: fn(&(f64, f64)) -> f64| self.recent.iter().map(pick).sum::<f64>() / self.recent.len() as f64;
         (mean(|r| r.0), mean(|r| r.1))
     }
 

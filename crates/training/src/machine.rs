@@ -53,7 +53,7 @@ fn builds_alike(one: &Law, other: &Law) -> bool {
 
 fn other_policy(one: &PolicySpec, other: &PolicySpec) -> Option<&'static str> {
     let network = |spec: &PolicySpec| (spec.hidden.clone(), spec.activation, spec.squash);
-    let scaling = |spec: &PolicySpec| (spec.observation_center.clone(), spec.observation_scale.clone());
+    let scaling = |spec: &PolicySpec| (spec.observation_center.clone(), spec.observation_scale.clone(), spec.normalize);
     if network(one) != network(other) {
         Some("the controller's network")
     } else if scaling(one) != scaling(other) {

@@ -82,7 +82,7 @@ fn tell(
     let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
     let policy = &space.assembly.policy;
     let totals = policy.space().totals(&policy.design(&space.params(&state.search.center())));
-    Ok(learned.record((mean(|r| r.0), mean(|r| r.1)), Vec::new(), totals, run)?)
+    Ok(learned.record(Some((mean(|r| r.0), mean(|r| r.1))), Vec::new(), totals, run)?)
 }
 
 /// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed, it is the error.

@@ -28,7 +28,8 @@ pub struct Trained {
     pub env_steps: u64,
     /// Time the training took, s, the evaluation apart.
     pub wall_s: f64,
-    /// The mean discounted return of the training episodes over the last [`TRAILING`](crate::TRAILING) iterations.
+    /// The mean discounted return of the training episodes over the last [`TRAILING`](crate::TRAILING) iterations in which some
+    /// came to their end; NaN where none ever did.
     pub training_discounted_return: f64,
     /// The same, undiscounted.
     pub training_return: f64,
@@ -110,12 +111,13 @@ pub fn train_by(
     })
 }
 
-/// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration.
+/// What a training begins with that goes on with the parameters of another one: a checkpoint before the first iteration. Of
+/// so many simulator steps are the statistics of observations among the parameters, if there are any.
 ///
 /// # Errors
 /// Where a parameter is no number.
-pub fn beginning(assembly: &Assembly, params: Vec<f32>) -> Result<Checkpoint, TrainError> {
-    Ok(Gradient::beginning(assembly, params).checkpoint()?)
+pub fn beginning(assembly: &Assembly, params: Vec<f32>, env_steps: u64) -> Result<Checkpoint, TrainError> {
+    Ok(Gradient::further(assembly, params, env_steps).checkpoint()?)
 }
 
 /// The parameters that a training had come to: the learner's, or the best of a search.

@@ -50,7 +50,10 @@ impl Worker {
     fn rows(&self, request: &EpisodesRequest, executor: &dyn Executor) -> Result<Batch, CollectError> {
         let prepared = self.prepared(&request.experiment)?;
         let sampler = prepared.sampler(&request.stage, request.steps, &request.params)?;
-        Ok(sampler.collect_part(executor, &request.params, &request.episodes)?)
+        Ok(match request.lanes {
+            None => sampler.collect_part(executor, &request.params, &request.episodes)?,
+            Some(steps) => sampler.collect_lanes(executor, &request.params, &request.episodes, steps)?,
+        })
     }
 
     fn results(&self, request: &EpisodesRequest, executor: &dyn Executor) -> Result<Vec<EpisodeAnswer>, CollectError> {
@@ -74,6 +77,11 @@ impl Worker {
             clock: Clock::start(0.0),
         };
         match gradient(&inner, &mut context, request.from.as_ref()) {
+            Ok(learned) if learned.trailing().0.is_nan() => {
+                let cause =
+                    "no training episode came to its end: the steps of every lane were used up before".to_owned();
+                Ok(CandidateAnswer::Failed(CandidateFailure { text: cause.clone(), cause }))
+            }
             Ok(learned) => Ok(CandidateAnswer::Trained {
                 controller: inner.policy.controller_params(&learned.params).to_vec(),
                 returns: learned.trailing(),

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::{Archive, PpoKind};
-use hwasp_core::{Batch, End, Episode, Executor, RolloutError};
+use hwasp_core::{Batch, End, Episode, Executor, Moments, RolloutError};
 use hwasp_experiment::Catalogue;
-use hwasp_testing::{Keeper, Settings, catalogue, executor, run, small, told};
+use hwasp_testing::{Keeper, Settings, UNSCALED, catalogue, executor, run, small, told};
 use hwasp_training::collect::{
     Answer, CandidateAnswer, CandidateRequest, CollectError, Collector, EpisodeAnswer, EpisodesRequest, ExperimentText,
     Request, Stage, Watch,
@@ -67,8 +67,9 @@ impl Collector for Elsewhere {
 
 #[test]
 fn another_process_gives_the_same_bits() {
-    const KINDS: [(&str, Settings); 4] = [
+    const KINDS: [(&str, Settings); 5] = [
         ("hwasp", &[]),
+        ("minimal", UNSCALED),
         ("cmaes", &[("train.env_steps", "20000")]),
         ("ars", &[("ars.variant", "v2-t"), ("ars.directions", "8"), ("train.env_steps", "20000")]),
         ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000")]),
@@ -162,6 +163,7 @@ fn numbers_that_are_none_travel_too() {
         episodes: vec![Episode {
             rows: 0..1,
             end: End::Truncated,
+            cut: true,
             last_obs: vec![0.1],
             last_state: vec![],
             context: vec![],
@@ -169,6 +171,7 @@ fn numbers_that_are_none_travel_too() {
             outcome: Some(hwasp_core::Outcome { kind: "ball".into(), success: true }),
         }],
         faults: vec![RolloutError { seed: 1, iteration: 2, episode: 3, step: 4, what: "it left".into() }],
+        observed: vec![Moments { count: 1.0, mean: vec![f64::NAN], squares: vec![f64::INFINITY] }],
     };
     let back = sent(&batch);
     assert_eq!(format!("{back:?}"), format!("{batch:?}"));
@@ -181,7 +184,7 @@ fn what_a_worker_cannot_set_up_is_an_answer() {
     let experiment = ExperimentText::of(assembly.experiment()).unwrap();
     let (stage, episodes) = (Stage::Deployment(assembly.built(&assembly.init())), held_out(1, 0..2));
     let params = assembly.policy.controller_params(&assembly.init()).to_vec();
-    let request = EpisodesRequest { experiment, stage, params, episodes, steps: None };
+    let request = EpisodesRequest { experiment, stage, params, episodes, steps: None, lanes: None };
     let ask = |request| Elsewhere::ask(&Request::Results(request));
     assert!(ask(request.clone()).is_ok());
     let wrong = |request| match ask(request) {
@@ -213,6 +216,7 @@ fn a_request_is_split_into_consecutive_parts() {
             params: vec![],
             episodes,
             steps: None,
+            lanes: None,
         };
         request.split(parts).iter().map(|part| part.episodes.indices.clone()).collect::<Vec<_>>()
     };

@@ -21,6 +21,7 @@ fn spec(law: Law, hidden: &[usize], center: Vec<f64>, scale: Vec<f64>, effort: f
         observation_center: center,
         observation_scale: scale,
         sees_design: false,
+        normalize: None,
         placements: vec![Placement::Graph; law.design().len()],
         noise: Noise {
             command: vec![0.3.into(); law.ports().command.len()],
@@ -96,6 +97,7 @@ pub(crate) fn hand_batch(policy: &HardwarePolicy, params: &[f32], rows: usize) -
         batch.episodes.push(Episode {
             rows: at..at + count,
             end: End::Truncated,
+            cut: false,
             last_obs: obs[..seen].to_vec(),
             last_state: batch.state[batch.state.len() - states..].to_vec(),
             context: vec![],

@@ -125,6 +125,7 @@ mod tests {
             episodes: vec![Episode {
                 rows: 0..rows,
                 end: End::Truncated,
+                cut: false,
                 last_obs: vec![0.25],
                 last_state: vec![],
                 context: vec![],
@@ -154,6 +155,7 @@ mod tests {
             episodes: vec![Episode {
                 rows: 0..2,
                 end: End::Truncated,
+                cut: false,
                 last_obs: vec![0.5],
                 last_state: vec![],
                 context: vec![],
@@ -201,6 +203,7 @@ mod tests {
             episodes: vec![Episode {
                 rows: 0..rows,
                 end: End::Truncated,
+                cut: false,
                 last_obs: vec![0.5],
                 last_state: vec![1.0],
                 context: vec![],

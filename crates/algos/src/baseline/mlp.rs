@@ -1,6 +1,6 @@
 //! A perceptron as value function.
 
-use hwasp_core::{Batch, Purpose, stream};
+use hwasp_core::{Batch, Purpose, Stream, stream};
 use hwasp_diff::{Activation, Mlp, MlpTape};
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -77,6 +77,18 @@ pub struct MlpBaseline {
     visible: InputDims,
     seed: u64,
     tape: MlpTape<f32>,
+}
+
+/// A fit on its way, from epoch to epoch.
+pub(crate) struct Fit {
+    /// Learning rates of all parameters.
+    rate: Vec<f32>,
+    order: Vec<u32>,
+    shuffle: Stream,
+    gradient: Vec<f32>,
+    /// Inputs and cotangents of a block.
+    seen: Vec<f32>,
+    cotangent: Vec<f32>,
 }
 
 /// Mean and standard deviation, the latter 1 where nothing varies.
@@ -189,22 +201,39 @@ impl MlpBaseline {
 
     /// Several epochs of Adam on the squared error. The order of rows comes from the stream of this iteration.
     pub fn fit(&mut self, batch: &Batch, targets: &[f32], progress: f64, iteration: u64) {
+        let mut fit = self.begin(batch, targets, progress, iteration);
+        self.fit_epochs(&mut fit, batch, targets, self.config.epochs);
+    }
+
+    pub(super) fn epochs(&self) -> usize {
+        self.config.epochs
+    }
+
+    /// A fit before its first epoch. From here on V is measured by the moments of these targets.
+    pub(super) fn begin(&mut self, batch: &Batch, targets: &[f32], progress: f64, iteration: u64) -> Fit {
         if self.moments.is_none() {
             self.take_scaling(batch);
         }
         self.follow(targets);
-        let (mean, std) = self.scale();
-        let (rows, width) = (batch.rows(), self.network.inputs());
         let decay = 1.0 + (self.config.learning_rate_final - 1.0) * progress;
-        let rate = vec![(self.config.learning_rate * decay) as f32; self.params.len()];
-        let mut order: Vec<u32> = (0..rows as u32).collect();
-        let mut shuffle = stream(self.seed, Purpose::Baseline, 1, iteration);
-        let mut gradient = vec![0.0; self.params.len()];
-        let mut seen = vec![0.0; BLOCK * width];
-        let mut cotangent = vec![0.0; BLOCK];
-        for _ in 0..self.config.epochs {
-            order.shuffle(&mut shuffle);
-            for indices in minibatches(&order, self.config.minibatch_rows) {
+        Fit {
+            rate: vec![(self.config.learning_rate * decay) as f32; self.params.len()],
+            order: (0..batch.rows() as u32).collect(),
+            shuffle: stream(self.seed, Purpose::Baseline, 1, iteration),
+            gradient: vec![0.0; self.params.len()],
+            seen: vec![0.0; BLOCK * self.network.inputs()],
+            cotangent: vec![0.0; BLOCK],
+        }
+    }
+
+    /// So many epochs of a fit.
+    pub(super) fn fit_epochs(&mut self, fit: &mut Fit, batch: &Batch, targets: &[f32], count: usize) {
+        let (mean, std) = self.scale();
+        let width = self.network.inputs();
+        let Fit { rate, order, shuffle, gradient, seen, cotangent } = fit;
+        for _ in 0..count {
+            order.shuffle(shuffle);
+            for indices in minibatches(order, self.config.minibatch_rows) {
                 self.network.bind(&self.params, &mut self.tape);
                 let weight = 1.0 / indices.len() as f32;
                 for block in indices.chunks(BLOCK) {
@@ -222,9 +251,9 @@ impl MlpBaseline {
                     self.network.vjp(seen, &cotangent[..rows], &mut self.tape);
                 }
                 gradient.fill(0.0);
-                self.network.gradient(&self.tape, &mut gradient);
-                clip_norm(&mut gradient, self.config.max_grad_norm);
-                self.adam.step(&mut self.params, &gradient, &rate);
+                self.network.gradient(&self.tape, gradient);
+                clip_norm(gradient, self.config.max_grad_norm);
+                self.adam.step(&mut self.params, gradient, rate);
             }
         }
     }
@@ -262,6 +291,7 @@ mod tests {
         let episodes = vec![Episode {
             rows: 0..rows,
             end: End::Truncated,
+            cut: false,
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![],

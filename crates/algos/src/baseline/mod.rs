@@ -4,6 +4,7 @@ mod linear;
 mod mlp;
 
 pub use linear::LinearBaseline;
+use mlp::Fit;
 pub use mlp::{MlpBaseline, MlpBaselineConfig};
 
 use hwasp_core::{Batch, Executor, Policy};
@@ -134,18 +135,61 @@ impl Baseline {
         (progress, iteration): (f64, u64),
         mut improve: impl FnMut() -> Result<T, LearnError> + Send,
     ) -> Result<T, LearnError> {
+        self.or_as_before(iteration, |baseline| {
+            let (mut improved, mut fitted) = (None, None);
+            executor.both(&mut || improved = Some(improve()), &mut || {
+                fitted = Some(baseline.fit(batch, targets, progress, iteration));
+            });
+            let (improved, fitted) = improved.zip(fitted).expect("an executor runs every job");
+            improved.and_then(|improved| fitted.map(|()| improved))
+        })
+    }
+
+    /// Does something with it. If that fails, the baseline is as it was before.
+    pub(crate) fn or_as_before<T>(
+        &mut self,
+        iteration: u64,
+        act: impl FnOnce(&mut Self) -> Result<T, LearnError>,
+    ) -> Result<T, LearnError> {
         let not_finite = |_| LearnError::NotFinite { what: "a parameter of the baseline", iteration };
         let before = self.save().map_err(not_finite)?;
-        let (mut improved, mut fitted) = (None, None);
-        executor.both(&mut || improved = Some(improve()), &mut || {
-            fitted = Some(self.fit(batch, targets, progress, iteration));
-        });
-        let (improved, fitted) = improved.zip(fitted).expect("an executor runs every job");
-        let result = improved.and_then(|improved| fitted.map(|()| improved));
+        let result = act(self);
         if result.is_err() {
             self.load(&before).map_err(not_finite)?;
         }
         result
+    }
+
+    /// Whether all its parameters are numbers.
+    pub(crate) fn check(&mut self, iteration: u64) -> Result<(), LearnError> {
+        // What cannot be saved is not finite.
+        let saved = self.save().map(drop);
+        saved.map_err(|_| LearnError::NotFinite { what: "a parameter of the baseline", iteration })
+    }
+
+    /// Passes over a batch that a fit takes.
+    pub(crate) fn epochs(&self) -> usize {
+        match self {
+            Self::Linear(_) => 1,
+            Self::Mlp(mlp) => mlp.epochs(),
+        }
+    }
+
+    /// A fit that is done epoch by epoch, before its first.
+    pub(crate) fn begin(&mut self, batch: &Batch, targets: &Advantages, progress: f64, iteration: u64) -> Option<Fit> {
+        match self {
+            Self::Linear(_) => None,
+            Self::Mlp(mlp) => Some(mlp.begin(batch, &targets.lambda_return, progress, iteration)),
+        }
+    }
+
+    /// So many epochs of a fit that was begun with this batch; the targets may have changed since.
+    pub(crate) fn fit_epochs(&mut self, fit: &mut Option<Fit>, batch: &Batch, targets: &Advantages, count: usize) {
+        match (self, fit) {
+            (Self::Linear(linear), None) if count > 0 => linear.fit(batch, &targets.discounted_return),
+            (Self::Mlp(mlp), Some(fit)) => mlp.fit_epochs(fit, batch, &targets.lambda_return, count),
+            _ => {}
+        }
     }
 }
 
@@ -168,6 +212,7 @@ mod tests {
         let episode = |i: usize| Episode {
             rows: 20 * i..20 * (i + 1),
             end: End::Truncated,
+            cut: false,
             last_obs: vec![0.5],
             last_state: vec![],
             context: vec![0.3 + 0.2 * i as f32],

@@ -124,6 +124,7 @@ fn gathered() -> (Batch, Vec<f32>, Draws) {
     let episode = |e: usize| Episode {
         rows: ROWS[e].clone(),
         end: End::Terminated,
+        cut: false,
         last_obs: vec![0.0],
         last_state: vec![],
         context: vec![],

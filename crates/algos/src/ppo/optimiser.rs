@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, ParamKind, Policy, Purpose, gaussian, stream};
+use hwasp_core::{Batch, ParamKind, Policy, Purpose, Stream, gaussian, stream};
 use rand::seq::SliceRandom;
 
 use super::{PpoConfig, metric_names};
@@ -32,6 +32,26 @@ pub(super) struct GradientStep<P: Policy> {
     log_std: Vec<f32>,
     log_std_gradient: Vec<f32>,
     pub(super) gradient: Vec<f32>,
+}
+
+/// An update on its way, from epoch to epoch.
+pub(super) struct Update {
+    progress: f64,
+    iteration: u64,
+    /// Learning rates of all parameters.
+    rates: Vec<f32>,
+    /// Whether a gradient step takes the whole batch.
+    whole: bool,
+    order: Vec<u32>,
+    shuffle: Stream,
+    /// Of the last epoch.
+    kl: f64,
+    clip_fraction: f64,
+    of_draws: RatioSums,
+    /// Sum of the gradients' norms, and gradient steps.
+    norms: f64,
+    steps: u32,
+    epochs: usize,
 }
 
 /// Sums over the rows of one gradient step.
@@ -80,6 +100,7 @@ impl<P: Policy> Optimiser<P> {
         for group in self.policy.groups() {
             let scale = match group.kind {
                 ParamKind::Controller => 1.0,
+                ParamKind::Normalizer => 0.0,
                 ParamKind::Design => config.design_lr_scale,
                 ParamKind::LogStd => config.log_std_lr_scale,
             };
@@ -100,51 +121,76 @@ impl<P: Policy> Optimiser<P> {
         progress: f64,
         iteration: u64,
     ) -> Result<Metrics, LearnError> {
-        let rates = self.learning_rates(progress);
-        let rows = batch.rows();
+        let mut update = self.begin(batch.rows(), progress, iteration);
+        while self.epoch(&mut update, batch, (advantage, draws))? {}
+        self.finish(&update)
+    }
+
+    /// An update from a batch of so many rows, before its first epoch.
+    pub(super) fn begin(&self, rows: usize, progress: f64, iteration: u64) -> Update {
         let size = self.config.minibatch_rows;
-        let whole = size == 0 || size >= rows;
-        let mut order: Vec<u32> = (0..rows as u32).collect();
-        let mut shuffle = stream(self.seed, Purpose::Minibatches, iteration, 0);
-        let (mut kl, mut clip_fraction, mut norms) = (0.0, 0.0, 0.0);
-        let mut of_draws = RatioSums::default();
-        let (mut steps, mut epochs) = (0, 0);
-        for epoch in 0..self.config.epochs {
-            if !whole {
-                order.shuffle(&mut shuffle);
-            }
-            let mut epoch_sums = RowSums::default();
-            for indices in minibatches(&order, size) {
-                // The whole batch in its own order needs gathering but once.
-                if !whole || epoch == 0 {
-                    let dims = self.dims();
-                    self.step.minibatch.gather(batch, advantage, indices, dims);
-                    self.step.minibatch.draws.gather(draws, indices);
-                }
-                let sums = self.step.run(&*self.policy, &self.params, &self.config, progress);
-                norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
-                steps += 1;
-                if !f64::is_finite(norms) {
-                    return Err(LearnError::NotFinite { what: "the policy gradient", iteration });
-                }
-                self.adam.step(&mut self.params, &self.step.gradient, &rates);
-                epoch_sums.add(sums);
-            }
-            let n = epoch_sums.rows.max(1) as f64;
-            (kl, clip_fraction) = (epoch_sums.kl / n, epoch_sums.clipped / n);
-            if epoch_sums.drawn > 0.0 {
-                let RatioSums { kl, clipped } = epoch_sums.draws;
-                of_draws = RatioSums { kl: kl / epoch_sums.drawn, clipped: clipped / epoch_sums.drawn };
-            }
-            epochs = epoch + 1;
-            if self.config.target_kl.is_some_and(|limit| kl.max(of_draws.kl) > 1.5 * limit) {
-                break;
-            }
+        Update {
+            progress,
+            iteration,
+            rates: self.learning_rates(progress),
+            whole: size == 0 || size >= rows,
+            order: (0..rows as u32).collect(),
+            shuffle: stream(self.seed, Purpose::Minibatches, iteration, 0),
+            kl: 0.0,
+            clip_fraction: 0.0,
+            of_draws: RatioSums::default(),
+            norms: 0.0,
+            steps: 0,
+            epochs: 0,
         }
+    }
+
+    /// An epoch; returns whether another one is to follow.
+    pub(super) fn epoch(
+        &mut self,
+        update: &mut Update,
+        batch: &Batch,
+        (advantage, draws): (&[f32], &Draws),
+    ) -> Result<bool, LearnError> {
+        if !update.whole {
+            update.order.shuffle(&mut update.shuffle);
+        }
+        // The whole batch in its own order needs gathering but once, unless its advantages change.
+        let gather = !update.whole || update.epochs == 0 || self.config.recompute_advantages;
+        let mut epoch_sums = RowSums::default();
+        for indices in minibatches(&update.order, self.config.minibatch_rows) {
+            if gather {
+                let dims = self.dims();
+                self.step.minibatch.gather(batch, advantage, indices, dims);
+                self.step.minibatch.draws.gather(draws, indices);
+            }
+            let sums = self.step.run(&*self.policy, &self.params, &self.config, update.progress);
+            update.norms += clip_norm(&mut self.step.gradient, self.config.max_grad_norm);
+            update.steps += 1;
+            if !update.norms.is_finite() {
+                return Err(LearnError::NotFinite { what: "the policy gradient", iteration: update.iteration });
+            }
+            self.adam.step(&mut self.params, &self.step.gradient, &update.rates);
+            epoch_sums.add(sums);
+        }
+        let n = epoch_sums.rows.max(1) as f64;
+        (update.kl, update.clip_fraction) = (epoch_sums.kl / n, epoch_sums.clipped / n);
+        if epoch_sums.drawn > 0.0 {
+            let RatioSums { kl, clipped } = epoch_sums.draws;
+            update.of_draws = RatioSums { kl: kl / epoch_sums.drawn, clipped: clipped / epoch_sums.drawn };
+        }
+        update.epochs += 1;
+        let far = self.config.target_kl.is_some_and(|limit| update.kl.max(update.of_draws.kl) > 1.5 * limit);
+        Ok(!far && update.epochs < self.config.epochs)
+    }
+
+    /// What an update has done, after its last epoch.
+    pub(super) fn finish(&mut self, update: &Update) -> Result<Metrics, LearnError> {
+        let Update { kl, clip_fraction, of_draws, norms, steps, epochs, .. } = *update;
         let grad_norm = norms / f64::from(steps).max(1.0);
-        self.policy.log_std(&self.params, progress, &mut self.step.log_std);
+        self.policy.log_std(&self.params, update.progress, &mut self.step.log_std);
         if !self.params.iter().all(|p| p.is_finite()) {
-            return Err(LearnError::NotFinite { what: "a parameter", iteration });
+            return Err(LearnError::NotFinite { what: "a parameter", iteration: update.iteration });
         }
         let entropy = gaussian::entropy(&self.step.log_std);
         let names = metric_names(&*self.policy);

@@ -110,6 +110,7 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
             .map(|i| Episode {
                 rows: i..i + 1,
                 end: End::Terminated,
+                cut: false,
                 last_obs: vec![0.0],
                 last_state: vec![],
                 context: vec![],
@@ -254,6 +255,49 @@ fn the_learning_rate_decays() {
     close(ppo.params()[0], 1.0 - 0.06);
 }
 
+/// To nothing at the end: the last update of a training moves no parameter, and breaks none.
+#[test]
+fn a_rate_of_nothing_moves_nothing() {
+    let mut settings = settings();
+    settings.ppo.learning_rate_final = 0.0;
+    let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+    ppo.update(&Serial, &first(), 1.0, 0).unwrap();
+    assert_eq!(ppo.params(), params());
+}
+
+/// An epoch whose advantages are computed anew is the first epoch of another update: the baseline learns after the one and is
+/// what the other begins with.
+#[test]
+fn advantages_of_later_epochs_come_from_the_fitted_baseline() {
+    let after = |recompute_advantages, epochs, updates| {
+        let mut settings = settings();
+        (settings.ppo.recompute_advantages, settings.ppo.epochs) = (recompute_advantages, epochs);
+        let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+        for _ in 0..updates {
+            ppo.update(&Serial, &first(), 0.0, 0).unwrap();
+        }
+        ppo.save().unwrap()
+    };
+    assert_eq!(after(true, 3, 1), after(false, 1, 3));
+    assert_ne!(after(true, 3, 1), after(false, 3, 1));
+}
+
+/// The limit on the divergence ends the epochs of the policy. The baseline has as many as ever, and where none of the policy's
+/// follows they are those that it has without.
+#[test]
+fn the_baseline_has_its_epochs_where_those_of_the_policy_end() {
+    let after = |recompute_advantages| {
+        let mlp = crate::baseline::MlpBaselineConfig { epochs: 7, ..crate::baseline::MlpBaselineConfig::default() };
+        let mut settings = PpoSettings { baseline: BaselineConfig::Mlp(mlp), ..settings() };
+        (settings.ppo.epochs, settings.ppo.target_kl) = (5, Some(1e-9));
+        settings.ppo.recompute_advantages = recompute_advantages;
+        let mut ppo = Ppo::new(&settings, Line::new(), params(), 0);
+        close(ppo.update(&Serial, &first(), 0.0, 0).unwrap().get("epochs").unwrap(), 1.0);
+        ppo.save().unwrap()
+    };
+    assert_eq!(after(true), after(false));
+}
+
 /// The second epoch ends the update where the first has moved the policy too far, and only there.
 #[test]
 fn epochs_end_at_the_kl_limit() {
@@ -330,8 +374,10 @@ fn an_update_that_fails_half_way_is_undone() {
 /// Saved after an update and taken up by a fresh learner, with either baseline.
 #[test]
 fn resumes_bit_for_bit() {
-    for baseline in [settings().baseline, BaselineConfig::Mlp(crate::baseline::MlpBaselineConfig::default())] {
-        let settings = PpoSettings { baseline, ..settings() };
+    let mlp = BaselineConfig::Mlp(crate::baseline::MlpBaselineConfig::default());
+    for (baseline, recompute) in [(settings().baseline, false), (mlp.clone(), false), (mlp, true)] {
+        let mut settings = PpoSettings { baseline, ..settings() };
+        (settings.ppo.recompute_advantages, settings.ppo.epochs) = (recompute, 3);
         let mut whole = Ppo::new(&settings, Line::new(), params(), 0);
         whole.update(&Serial, &first(), 0.0, 0).unwrap();
         let mut resumed = Ppo::new(&settings, Line::new(), vec![0.0; 2], 0);

@@ -1,68 +1,58 @@
 //! The state filter of ARS V2.
 
+use hwasp_core::Moments;
+
 use crate::archive::{Exchange, Persist, StateError};
 
 /// Running mean and deviation of what the controller sees (Mania et al. 2018, section 3.2): ARS V2 centres and scales its
 /// input by them. Not seen by the search itself: it is folded into the first layer of every candidate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateFilter {
-    count: f64,
-    mean: Vec<f64>,
-    /// Sums of squared deviations from the mean.
-    squares: Vec<f64>,
+    seen: Moments,
 }
 
 impl StateFilter {
     /// For observations of `dim` components. It changes nothing until it has seen some.
     pub fn new(dim: usize) -> Self {
-        Self { count: 0.0, mean: vec![0.0; dim], squares: vec![0.0; dim] }
+        Self { seen: Moments::new(dim) }
     }
 
     /// One for the same observations that has seen none.
     pub fn blank(&self) -> Self {
-        Self::new(self.mean.len())
+        Self::new(self.seen.mean.len())
     }
 
     /// Takes in observations, row by row.
     pub fn update(&mut self, obs: &[f32]) {
-        let dim = self.mean.len();
-        let rows = (obs.len() / dim.max(1)) as f64;
-        if rows == 0.0 {
+        let dim = self.seen.mean.len();
+        let mut part = Moments::new(dim);
+        part.count = (obs.len() / dim.max(1)) as f64;
+        if part.count == 0.0 {
             return;
         }
-        let mut other = Self { count: rows, ..Self::new(dim) };
         for j in 0..dim {
             let column = || obs.iter().skip(j).step_by(dim).map(|&o| f64::from(o));
-            other.mean[j] = column().sum::<f64>() / rows;
-            other.squares[j] = column().map(|o| (o - other.mean[j]).powi(2)).sum();
+            let mean = column().sum::<f64>() / part.count;
+            part.mean[j] = mean;
+            part.squares[j] = column().map(|o| (o - mean).powi(2)).sum();
         }
-        self.join(&other);
+        self.seen.merge(&part);
     }
 
-    /// Takes in what another one has seen (Chan et al. 1983, eq. 1.5: the sums of both parts joined).
+    /// Takes in what another one has seen.
     pub fn join(&mut self, other: &Self) {
-        let total = self.count + other.count;
-        if other.count == 0.0 {
-            return;
-        }
-        for j in 0..self.mean.len() {
-            let apart = other.mean[j] - self.mean[j];
-            self.mean[j] += apart * other.count / total;
-            self.squares[j] += other.squares[j] + apart * apart * self.count * other.count / total;
-        }
-        self.count = total;
+        self.seen.merge(&other.seen);
     }
 
     /// Rewrites the first layer of a perceptron (weights `[dim × width]` row by row, then biases `[width]`, at the front
     /// of `params`), so that it does to an observation o what it did to (o - mean)/std. Components that never changed
     /// are only centred.
     pub fn fold(&self, params: &mut [f32], width: usize) {
-        if self.count < 2.0 {
+        if self.seen.count < 2.0 {
             return;
         }
-        let (weights, biases) = params.split_at_mut(self.mean.len() * width);
-        for ((row, mean), squares) in weights.chunks_exact_mut(width).zip(&self.mean).zip(&self.squares) {
-            let variance = squares / self.count;
+        let (weights, biases) = params.split_at_mut(self.seen.mean.len() * width);
+        for ((row, mean), variance) in weights.chunks_exact_mut(width).zip(&self.seen.mean).zip(self.seen.variances()) {
             let std = if variance > 1e-12 { variance.sqrt() } else { 1.0 };
             for (weight, bias) in row.iter_mut().zip(&mut *biases) {
                 let scaled = f64::from(*weight) / std;
@@ -75,9 +65,7 @@ impl StateFilter {
 
 impl Persist for StateFilter {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        with.number("count", &mut self.count)?;
-        with.vector("mean", &mut self.mean)?;
-        with.vector("squares", &mut self.squares)
+        self.seen.exchange(with)
     }
 }
 
@@ -104,8 +92,8 @@ mod tests {
             joined.join(&part);
         }
         for filter in [&whole, &parts, &joined] {
-            assert!((filter.mean[0] - mean).abs() < 1e-12);
-            assert!((filter.squares[0] - squares).abs() < 1e-9);
+            assert!((filter.seen.mean[0] - mean).abs() < 1e-12);
+            assert!((filter.seen.squares[0] - squares).abs() < 1e-9);
         }
     }
 

@@ -40,6 +40,7 @@ fn policy_of(placements: Vec<Placement>) -> (MassSpring, Arc<HardwarePolicy>) {
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,
+        normalize: None,
         law: problem.law(),
         placements,
         noise,

@@ -41,7 +41,7 @@ impl<'p> Actor<'p> {
     /// Binds `params` as they are at `progress` in [0, 1] of training, for up to `max` episodes at once.
     pub fn new(policy: &'p HardwarePolicy, params: &[f32], progress: f64, max: usize) -> Self {
         let mut controller = policy.controller.tape(max);
-        policy.controller.bind(policy.controller_params(params), &mut controller);
+        policy.controller.bind(&params[policy.range(ParamKind::Controller)], &mut controller);
         let program = &policy.composition.program;
         let u: Vec<f64> = params[policy.range(ParamKind::Design)].iter().map(|&u| f64::from(u)).collect();
         let mut law = program.tape(max);

@@ -23,6 +23,9 @@ pub struct PolicySpec {
     /// Whether the controller sees the design as well: after the observation, each parameter scaled to [-1, 1] by its limits. It
     /// sees what was drawn for the episode, and of other parameters what they are at the time. No gradient passes this way.
     pub sees_design: bool,
+    /// Where centre and scale are running statistics, how far from zero what the controller sees may be: they are parameters
+    /// of the policy then ([`ParamKind::Normalizer`](super::ParamKind::Normalizer)) that begin with the two above.
+    pub normalize: Option<f64>,
     /// The mechanism.
     pub law: Law,
     /// Where each design parameter sits.

@@ -6,7 +6,7 @@ use hwasp_diff::{Activation, Mlp, MlpTape, Program, ProgramTape};
 use rand::RngExt;
 
 use super::compose::{Composition, PolicySpec};
-use super::{ParamGroup, ParamKind, Policy, Rows};
+use super::{Normalizer, ParamGroup, ParamKind, Policy, Rows};
 use crate::design::DesignSpace;
 use crate::environment::{CommandPort, EnvSpec};
 use crate::placement::{ActionDecoder, PlacementError};
@@ -14,8 +14,9 @@ use crate::streams::{Purpose, stream};
 
 /// A perceptron composed with a hardware law (paper, section 4): `π(a_new | s, a)·π(a | s)` as one Gaussian.
 ///
-/// Parameters: the controller's, then the unbounded stand-ins of the design parameters that are not fixed, then (where
-/// they are trained) the log standard deviations.
+/// Parameters: the controller's, then (where they are running statistics) centre and scale of what it sees, then the
+/// unbounded stand-ins of the design parameters that are not fixed, then (where they are trained) the log standard
+/// deviations.
 #[derive(Clone, Debug)]
 pub struct HardwarePolicy {
     spec: PolicySpec,
@@ -58,13 +59,18 @@ impl HardwarePolicy {
         let controller = Mlp::new(&sizes, spec.activation, output);
         let mut groups = Vec::new();
         let mut at = 0;
+        let scaling = if spec.normalize.is_some() { 2 * env.observation.len() } else { 0 };
         let log_stds = if spec.noise.train { composition.layout.len() } else { 0 };
         for (kind, count) in [
             (ParamKind::Controller, controller.param_count()),
+            (ParamKind::Normalizer, scaling),
             (ParamKind::Design, composition.free.len()),
             (ParamKind::LogStd, log_stds),
         ] {
-            groups.push(ParamGroup { kind, range: at..at + count });
+            // Most policies have no running statistics, and their parameters are those of before there were any.
+            if kind != ParamKind::Normalizer || count > 0 {
+                groups.push(ParamGroup { kind, range: at..at + count });
+            }
             at += count;
         }
         let commands = env.command.clone();
@@ -93,6 +99,10 @@ impl HardwarePolicy {
     pub fn init(&self, seed: u64, output_gain: f64) -> Vec<f32> {
         let mut weights = stream(seed, Purpose::Weights, 0, 0);
         let mut params = self.controller.init(output_gain, || weights.random::<f64>());
+        if self.spec.normalize.is_some() {
+            let scaling = self.spec.observation_center.iter().chain(&self.spec.observation_scale);
+            params.extend(scaling.map(|&x| x as f32));
+        }
         let u = self.space().sample_initial(&mut stream(seed, Purpose::Design, 0, 0));
         params.extend(self.composition.free.iter().map(|&i| u[i] as f32));
         if self.spec.noise.train {
@@ -125,9 +135,28 @@ impl HardwarePolicy {
         self.range(ParamKind::Design)
     }
 
-    /// The controller's part of a parameter vector.
+    /// The controller's part of a parameter vector: its weights, and centre and scale of what it sees where they are
+    /// parameters. They are all the parameters of the same controller on hardware that is fixed.
     pub fn controller_params<'p>(&self, params: &'p [f32]) -> &'p [f32] {
-        &params[self.range(ParamKind::Controller)]
+        &params[self.range(ParamKind::Controller).start..self.normalizer_params().end]
+    }
+
+    /// Where centre and scale of the observations lie in the parameter vector, the centres first; empty where they are not
+    /// parameters.
+    pub fn normalizer_params(&self) -> Range<usize> {
+        let end = self.range(ParamKind::Controller).end;
+        if self.spec.normalize.is_some() { self.range(ParamKind::Normalizer) } else { end..end }
+    }
+
+    /// What the controller sees of an observation, with these parameters.
+    pub fn normalizer(&self, params: &[f32]) -> Normalizer {
+        let spec = &self.spec;
+        if spec.normalize.is_none() {
+            return Normalizer::new(spec.observation_center.clone(), spec.observation_scale.clone(), None);
+        }
+        let wide = |values: &[f32]| values.iter().map(|&x| f64::from(x)).collect();
+        let (center, scale) = params[self.normalizer_params()].split_at(spec.observation_center.len());
+        Normalizer::new(wide(center), wide(scale), spec.normalize)
     }
 
     /// The controller.
@@ -148,7 +177,7 @@ impl HardwarePolicy {
     /// Where the parameters of a kind lie; empty where there are none.
     pub(super) fn range(&self, kind: ParamKind) -> Range<usize> {
         let group = self.groups.iter().find(|g| g.kind == kind);
-        group.expect("a policy has a group of every kind, if an empty one").range.clone()
+        group.expect("a policy has a group of every kind but running statistics, if an empty one").range.clone()
     }
 
     /// Which component of the action a command is; none where the command is not sampled, as only the law reads it.
@@ -174,15 +203,6 @@ impl HardwarePolicy {
         for (i, (out, value)) in out.iter_mut().zip(design).enumerate() {
             let (lo, hi) = self.space().bounds(i);
             *out = (2.0 * (value - lo) / (hi - lo) - 1.0) as f32;
-        }
-    }
-
-    /// What the controller sees of an observation in SI: the first [`observations`](Self::observations) of its inputs.
-    #[inline]
-    pub fn normalize(&self, observation: &[f64], out: &mut [f32]) {
-        let scaling = self.spec.observation_center.iter().zip(&self.spec.observation_scale);
-        for ((out, x), (center, scale)) in out.iter_mut().zip(observation).zip(scaling) {
-            *out = ((x - center) / scale) as f32;
         }
     }
 }

@@ -7,11 +7,13 @@ mod actor;
 mod compose;
 mod hardware_policy;
 mod noise;
+mod normalizer;
 
 pub use actor::Actor;
 pub use compose::PolicySpec;
 pub use hardware_policy::{HardwarePolicy, PolicyTape};
 pub use noise::{Anneal, Noise, Spread};
+pub use normalizer::Normalizer;
 
 use std::ops::Range;
 
@@ -20,6 +22,9 @@ use std::ops::Range;
 pub enum ParamKind {
     /// Weights and biases of the controller.
     Controller,
+    /// Centre and scale of every observation, one after the other, where they are running statistics: nothing learns
+    /// them, and whoever gathers the statistics writes them.
+    Normalizer,
     /// Unbounded stand-ins of the design parameters that are not fixed.
     Design,
     /// Log standard deviations of the action's components.
@@ -31,6 +36,7 @@ impl ParamKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Controller => "controller",
+            Self::Normalizer => "normalizer",
             Self::Design => "design",
             Self::LogStd => "log_std",
         }

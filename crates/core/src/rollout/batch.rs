@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{RolloutError, discounted};
 use crate::environment::{End, Outcome};
+use crate::moments::Moments;
 
 /// One episode of a [`Batch`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,6 +15,10 @@ pub struct Episode {
     pub rows: Range<usize>,
     /// How it ended.
     pub end: End,
+    /// Whether it was truncated because the steps of its lane were used up ([`LaneSteps`](super::LaneSteps)): the task would
+    /// have gone on, so its return is that of a part.
+    #[serde(default)]
+    pub cut: bool,
     /// What the controller would have seen next: the state whose value a truncated episode is bootstrapped from.
     #[serde(with = "crate::bits")]
     pub last_obs: Vec<f32>,
@@ -52,6 +57,10 @@ pub struct Batch {
     pub episodes: Vec<Episode>,
     /// Those whose physics failed; their rows were thrown away.
     pub faults: Vec<RolloutError>,
+    /// Of each of the episodes, the moments of the observations in its rows, SI: of those that train a policy whose centre and
+    /// scale are running statistics. None otherwise.
+    #[serde(default)]
+    pub observed: Vec<Moments>,
 }
 
 impl Batch {
@@ -114,5 +123,6 @@ impl Batch {
             e
         }));
         self.faults.extend(other.faults);
+        self.observed.extend(other.observed);
     }
 }

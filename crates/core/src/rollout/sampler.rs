@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::lanes::{Keep, Lanes};
-use super::{Batch, EpisodeResult, Episodes, RolloutError};
+use super::{Batch, EpisodeResult, Episodes, LaneSteps, RolloutError};
 use crate::environment::{Environment, MakeEnvironment};
 use crate::executor::Executor;
 use crate::policy::{Actor, HardwarePolicy};
@@ -60,7 +60,25 @@ impl Sampler {
         episodes: &Episodes,
     ) -> Result<Batch, RolloutError> {
         let lanes = lanes(executor, &episodes.indices);
-        let parts = self.jobs(executor, params, episodes, lanes, Keep::Rows, |lanes, _| lanes.batch());
+        let parts = self.jobs(executor, params, episodes, lanes, Keep::Rows(None), |lanes, _| lanes.batch());
+        Ok(Batch::join(parts.into_iter().collect::<Result<_, _>>()?))
+    }
+
+    /// Runs lanes instead of single episodes: `episodes.indices` are some of them, and each takes its share of `steps`. The
+    /// batch has the episodes of one lane after those of the other. Parts are put together as those of
+    /// [`collect_part`](Self::collect_part) are.
+    ///
+    /// # Errors
+    /// Where a reward or a log-probability is no number. Told is the first of the lane with the lowest index.
+    pub fn collect_lanes(
+        &self,
+        executor: &dyn Executor,
+        params: &[f32],
+        episodes: &Episodes,
+        steps: LaneSteps,
+    ) -> Result<Batch, RolloutError> {
+        let lanes = lanes(executor, &episodes.indices);
+        let parts = self.jobs(executor, params, episodes, lanes, Keep::Rows(Some(steps)), |lanes, _| lanes.batch());
         Ok(Batch::join(parts.into_iter().collect::<Result<_, _>>()?))
     }
 
@@ -144,7 +162,7 @@ impl Sampler {
     ) -> Result<T, RolloutError> {
         let count = (episodes.indices.end - episodes.indices.start) as usize;
         let environments = (0..count).map(|_| self.environment()).collect();
-        let mut lanes = Lanes::new(&self.policy, environments, episodes, keep);
+        let mut lanes = Lanes::new(&self.policy, params, environments, episodes, keep);
         let mut actor = Actor::new(&self.policy, params, episodes.progress, count);
         let result = lanes.run(&mut actor, episodes).map(|()| result(&mut lanes, episodes));
         self.idle().append(&mut lanes.environments);

@@ -141,6 +141,7 @@ pub(crate) fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
         observation_center: vec![0.1, 0.0, -0.2],
         observation_scale: vec![0.5, 1.0, 2.0],
         sees_design: false,
+        normalize: None,
         law: Law::new(Winch::new()),
         placements,
         noise: noise(),

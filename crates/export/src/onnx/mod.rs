@@ -41,13 +41,19 @@ pub(super) fn models(deployed: &Deployed, contract: &Contract) -> Result<Vec<Exp
 
 /// From observation to command, in single precision but for what is before and after the network.
 fn controller(graph: &mut Graph, deployed: &Deployed, outside: ElementType) {
-    let Scaling { center, scale, gain, offset, lowest, highest } = Scaling::new(deployed);
-    for (name, values) in [&center, &scale, &gain, &offset, &lowest, &highest] {
+    let Scaling { center, scale, seen, gain, offset, lowest, highest } = Scaling::new(deployed);
+    for (name, values) in [&center, &scale, &gain, &offset, &lowest, &highest].into_iter().chain(seen.iter().flatten())
+    {
         graph.numbers(name, &[values.len()], values, outside);
     }
     graph.node("Sub", &[OBSERVATION, center.0], "observation.centered");
     graph.node("Div", &["observation.centered", scale.0], "observation.normalized");
     let mut at = "observation.normalized".to_owned();
+    if let Some([least, most]) = &seen {
+        graph.node("Max", &[&at, least.0], "observation.above");
+        graph.node("Min", &["observation.above", most.0], "observation.clipped");
+        at = "observation.clipped".to_owned();
+    }
     if outside == ElementType::Float64 {
         at = graph.cast(&at, "controller.input", ElementType::Float32);
     }

@@ -23,7 +23,9 @@ pub(crate) fn section(run: &Run) -> Section {
                 tr { th scope="row" { "iterations" } td { (grouped(summary.iterations)) } }
                 tr { th scope="row" { "simulator steps" } td { (grouped(summary.env_steps)) } }
                 tr { th scope="row" { "time" } td { (duration(summary.wall_s)) ", " (grouped(summary.steps_per_s as u64)) " steps/s" } }
-                tr { th scope="row" { "discounted return at its end" } td { (decimal(summary.training_discounted_return, 2)) } }
+                @if let Some(figure) = summary.training_discounted_return {
+                    tr { th scope="row" { "discounted return at its end" } td { (decimal(figure, 2)) } }
+                }
                 @if let Some(failed) = summary.failed_candidates {
                     tr { th scope="row" { "candidates that failed" } td { (grouped(failed)) } }
                 }

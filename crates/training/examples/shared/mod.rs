@@ -48,6 +48,7 @@ pub(crate) fn train(
         observation_center: center.to_vec(),
         observation_scale: scale.to_vec(),
         sees_design: false,
+        normalize: None,
         law: law.clone(),
         placements: vec![placement; law.design().len()],
         noise,

@@ -2,7 +2,7 @@
 //! holds, and less by no more than the smallest [`Piece`] of the method.
 
 use hwasp_algos::CmaesConfig;
-use hwasp_core::Policy;
+use hwasp_core::{LaneSteps, Policy};
 use hwasp_experiment::Method;
 
 use super::{AssembleError, Assembly};
@@ -20,37 +20,60 @@ pub struct Piece {
     pub env_steps: u64,
 }
 
+/// What an iteration of a training by gradients takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Portion {
+    /// So many whole episodes.
+    Episodes(u64),
+    /// So many steps of lanes.
+    Steps(LaneSteps),
+}
+
 impl Assembly {
-    /// The episodes of the iteration that follows so many steps, 0 where the budget is spent.
+    /// What the iteration that follows so many steps takes; none where the budget is spent.
     ///
     /// Iterations are as the experiment has them, but for the last: it takes what is left, from half to one and a half times
-    /// the usual number of episodes. The gradient is then a mean over a sensible number of episodes, and the budget is spent to
-    /// within an episode. Where episodes end early, [`further_episodes`](Self::further_episodes) spend the rest.
-    pub(crate) fn iteration_episodes(&self, env_steps: u64) -> u64 {
-        let usual = self.experiment().train.episodes_per_iteration as u64;
-        match self.whole_episodes(env_steps) {
+    /// the usual number of episodes, or of steps where those are counted. The gradient is then a mean over a sensible number,
+    /// and the budget is spent to within an episode, or to the step. Where episodes are counted and end early,
+    /// [`further_episodes`](Self::further_episodes) spend the rest.
+    pub(crate) fn portion(&self, env_steps: u64) -> Option<Portion> {
+        let train = &self.experiment().train;
+        let (usual, unit) = self.counted();
+        let count = match train.env_steps.saturating_sub(env_steps) / unit {
             left if 2 * left >= 3 * usual => usual,
             left if 2 * left >= usual => left,
-            _ => 0,
+            _ => return None,
+        };
+        let lanes = train.episodes_per_iteration as u64;
+        let steps = train.steps_per_iteration > 0;
+        Some(if steps { Portion::Steps(LaneSteps { lanes, steps: count }) } else { Portion::Episodes(count) })
+    }
+
+    /// How many of what is counted an iteration has, and the most steps of one of them.
+    fn counted(&self) -> (u64, u64) {
+        let train = &self.experiment().train;
+        match train.steps_per_iteration {
+            0 => (train.episodes_per_iteration as u64, train.episode_steps as u64),
+            steps => (steps as u64, 1),
         }
     }
 
-    /// The episodes by which the iteration at hand grows, once it has come to so many steps: where episodes end early, and what
-    /// that leaves is too little for an iteration of its own. A gradient of a few episodes would be mostly noise, and be followed
-    /// as far as any other.
+    /// The episodes by which the iteration at hand grows, once it has come to so many steps: where episodes are counted and end
+    /// early, and what that leaves is too little for an iteration of its own. A gradient of a few episodes would be mostly noise,
+    /// and be followed as far as any other.
     pub(crate) fn further_episodes(&self, env_steps: u64) -> u64 {
-        if self.iteration_episodes(env_steps) > 0 { 0 } else { self.whole_episodes(env_steps) }
-    }
-
-    /// Episodes of the full length that the budget holds after so many steps.
-    fn whole_episodes(&self, env_steps: u64) -> u64 {
         let train = &self.experiment().train;
+        if train.steps_per_iteration > 0 || self.portion(env_steps).is_some() {
+            return 0;
+        }
         train.env_steps.saturating_sub(env_steps) / train.episode_steps as u64
     }
 
-    /// Iterations of a training whose episodes all have their full length, and the episodes of the last one.
+    /// Iterations of a training, and the episodes of the last one, or its steps where steps are counted. Where episodes are
+    /// counted, all have their full length.
     pub fn iterations(&self) -> (u64, u64) {
-        let (whole, usual) = (self.whole_episodes(0), self.experiment().train.episodes_per_iteration as u64);
+        let (usual, unit) = self.counted();
+        let whole = self.experiment().train.env_steps / unit;
         match (whole / usual, whole % usual) {
             // Less than half an iteration goes into the one before.
             (iterations, rest) if iterations > 0 && 2 * rest < usual => (iterations, usual + rest),
@@ -63,6 +86,7 @@ impl Assembly {
     pub fn piece(&self) -> Piece {
         match self.generation() {
             Some((popsize, each)) => Piece { what: "generation", env_steps: popsize as u64 * each },
+            None if self.experiment().train.steps_per_iteration > 0 => Piece { what: "step", env_steps: 1 },
             None => Piece { what: "episode", env_steps: self.experiment().train.episode_steps as u64 },
         }
     }

@@ -107,7 +107,7 @@ impl Scoring<'_> {
         let charged = (indices.end - indices.start) * spec.train.episode_steps as u64;
         let episodes = Episodes { seed: spec.seed, iteration, indices, progress: self.progress, kind };
         let (experiment, steps) = (self.experiment.clone(), Some(spec.train.episode_steps));
-        let request = EpisodesRequest { experiment, stage: Stage::Training, params, episodes, steps };
+        let request = EpisodesRequest { experiment, stage: Stage::Training, params, episodes, steps, lanes: None };
         let mut seen = self.seen.cloned();
         let results = match &mut seen {
             Some(seen) => looked_through(collector, &request, spec.discount(), seen),

@@ -44,7 +44,7 @@ impl Tuning {
         let mut start = assembly.init();
         let controller = run.policy.controller_params(params);
         start[..controller.len()].copy_from_slice(controller);
-        let start = beginning(&assembly, start).map_err(Box::new)?;
+        let start = beginning(&assembly, start, run.experiment().train.env_steps).map_err(Box::new)?;
         Ok(Self { assembly, start })
     }
 

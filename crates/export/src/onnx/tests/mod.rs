@@ -10,6 +10,7 @@ use hwasp_diff::{Program, Scalar};
 use hwasp_training::Assembly;
 use prost::Message;
 use rand::RngExt;
+use safetensors::SafeTensors;
 
 use self::runtime::{Tensor, run};
 use super::graph::Graph;
@@ -32,6 +33,9 @@ fn deployed(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Deploy
     let mut params: Vec<f32> = (0..assembly.policy.param_count()).map(|_| random.random_range(-0.3..0.3)).collect();
     // Weights of the first layer as large as make the units turn.
     params[..inputs].iter_mut().for_each(|weight| *weight *= 5.0);
+    // Scales of observations are positive.
+    let scaling = assembly.policy.normalizer_params();
+    params[scaling.start + scaling.len() / 2..scaling.end].iter_mut().for_each(|scale| *scale = scale.abs() + 0.05);
     Deployed::new(&assembly, &params).unwrap()
 }
 
@@ -44,8 +48,8 @@ fn written(deployed: &Deployed) -> [ModelProto; 2] {
 /// Observations around the centre, and states of any size.
 fn inputs(deployed: &Deployed, rows: usize) -> (Vec<f32>, Vec<f64>) {
     let random = &mut stream(6, Purpose::Samples, 0, 0);
-    let policy = deployed.policy.spec();
-    let scaling: Vec<_> = policy.observation_center.iter().zip(&policy.observation_scale).collect();
+    let normalizer = deployed.normalizer();
+    let scaling: Vec<_> = normalizer.center().iter().zip(normalizer.scale()).collect();
     let draw = |random: &mut Stream| random.random_range(-3.0..3.0);
     let observations = (0..rows).flat_map(|_| {
         let row: Vec<f32> = scaling.iter().map(|&(center, scale)| (center + scale * draw(random)) as f32).collect();
@@ -119,6 +123,43 @@ fn networks_of_every_kind() {
     agree("mass-spring", "hwasp", &[("controller.activation", "relu"), ("controller.squash", "false"), wide]);
     agree("mass-spring", "hwasp", &[("controller.hidden", "[]"), ("controller.squash", "true")]);
     agree("mass-spring", "hwasp", &[("controller.hidden", "[7, 5, 3]"), ("controller.squash", "true")]);
+}
+
+/// Centre, scale and clip of a controller that was trained with running statistics, in every form of it. Observations are within
+/// three scales of the centre, and it sees one and a half.
+#[test]
+fn running_statistics() {
+    let settings = [
+        ("controller.observation_center", "[0.0, 0.0]"),
+        ("controller.observation_scale", "[1.0, 1.0]"),
+        ("controller.normalize_observations", "true"),
+        ("controller.observation_clip", "1.5"),
+    ];
+    for method in ["hwasp", "minimal"] {
+        agree("mass-spring", method, &settings);
+    }
+    let deployed = deployed("mass-spring", "hwasp", &settings);
+    let (normalizer, contract) = (deployed.normalizer(), Contract::new(&deployed));
+    assert!(normalizer.center() != [0.0, 0.0] && normalizer.scale() != [1.0, 1.0]);
+    let json = crate::controller::json(&deployed, &contract).unwrap();
+    let told: serde_json::Value = serde_json::from_slice(&json.contents).unwrap();
+    let tensors = crate::controller::safetensors(&deployed, &contract).unwrap();
+    let tensors = SafeTensors::deserialize(&tensors.contents).unwrap();
+    let tensor = |name: &str| -> Vec<f64> {
+        let data = tensors.tensor(name).unwrap();
+        data.data().as_chunks().0.iter().map(|&b| f64::from(f32::from_le_bytes(b))).collect()
+    };
+    assert_eq!([tensor("observation.lowest"), tensor("observation.highest")], [[-1.5; 2], [1.5; 2]]);
+    for (i, observed) in told["observation"].as_array().unwrap().iter().enumerate() {
+        let number = |key: &str| observed[key].as_f64().unwrap();
+        let wanted = [normalizer.center()[i], normalizer.scale()[i], 1.5];
+        assert_eq!(["center", "scale", "clip"].map(number), wanted);
+        assert_eq!([tensor("observation.center")[i], tensor("observation.scale")[i]], wanted[..2]);
+    }
+    // Without them nothing is clipped, and nothing says so.
+    let plain = self::deployed("mass-spring", "hwasp", &[]);
+    let told = serde_json::to_value(Contract::new(&plain)).unwrap();
+    assert!(told["observation"][0].get("clip").is_none());
 }
 
 #[test]

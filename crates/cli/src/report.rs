@@ -163,10 +163,7 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
         let generations = spec.train.env_steps / (popsize as u64 * each);
         format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
     } else {
-        let ((iterations, last), usual) = (assembly.iterations(), spec.train.episodes_per_iteration);
-        let last = if last == usual as u64 { String::new() } else { format!(", the last of {last}") };
-        let steps = spec.train.episode_steps;
-        format!("{} iterations of {usual} episodes of {steps} steps{last}", grouped(iterations))
+        iterations(spec, assembly)
     };
     let design = policy.space().names().len();
     format!(
@@ -180,6 +177,28 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
         shorten(policy.action_names()),
         grouped(spec.train.env_steps),
     )
+}
+
+/// The iterations of a training by gradients. Where steps are counted, what lanes are too short for is told.
+fn iterations(spec: &Experiment, assembly: &Assembly) -> String {
+    let (train, (iterations, last)) = (&spec.train, assembly.iterations());
+    let (lanes, episode) = (train.episodes_per_iteration, train.episode_steps);
+    if train.steps_per_iteration == 0 {
+        let last = if last == lanes as u64 { String::new() } else { format!(", the last of {last}") };
+        return format!("{} iterations of {lanes} episodes of {episode} steps{last}", grouped(iterations));
+    }
+    let usual = train.steps_per_iteration as u64;
+    let last = if last == usual { String::new() } else { format!(", the last of {}", grouped(last)) };
+    let mut text = format!("{} iterations of {} steps in {lanes} lanes{last}", grouped(iterations), grouped(usual));
+    if let Some(lane) = train.short_lanes() {
+        let _ = write!(
+            text,
+            "\n  warning     a lane takes {lane} steps an iteration, and an episode may have {episode}: what comes after step \
+             {lane} of an episode is never seen\n              take fewer lanes (train.episodes_per_iteration) or more steps \
+             (train.steps_per_iteration), unless episodes end before"
+        );
+    }
+    text
 }
 
 /// The first few of many names.

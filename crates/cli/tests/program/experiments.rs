@@ -14,6 +14,8 @@ fn sound_experiments() {
         "check mass-spring",
         "check mass-spring --method minimal",
         "check reach --method fixed --set train.env_steps=1e6",
+        "check reach --set train.steps_per_iteration=2048 --set train.episodes_per_iteration=8",
+        "check reach --set train.steps_per_iteration=1000",
     ]));
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Lanes<'p> {
     stride: usize,
     /// Nothing but rewards where no more is kept.
     batch: Batch,
-    lanes: Vec<Lane>,
+    stands: Vec<Lane>,
     /// The log-probability of what was drawn for the episode at hand of each lane.
     drawn: Vec<f32>,
     /// The episodes that are over, with their rows before gaps are closed, in the order in which they ended.
@@ -79,8 +79,8 @@ impl<'p> Lanes<'p> {
             let observed = observes.then(|| Moments::new(policy.observations()));
             Lane { share, began: 0, before: 0, end, observed }
         };
-        let lanes: Vec<Lane> = episodes.indices.clone().map(lane).collect();
-        let stride = lanes.iter().map(|lane| lane.share).max().unwrap_or(0);
+        let stands: Vec<Lane> = episodes.indices.clone().map(lane).collect();
+        let stride = stands.iter().map(|lane| lane.share).max().unwrap_or(0);
         let rows = if keep == Keep::Rewards { 0 } else { count * stride };
         let batch = Batch {
             obs: vec![0.0; rows * policy.obs_dim()],
@@ -101,7 +101,7 @@ impl<'p> Lanes<'p> {
             keep,
             stride,
             batch,
-            lanes,
+            stands,
             drawn: vec![0.0; count],
             over: Vec::new(),
             seen: vec![0.0; policy.observations()],
@@ -133,7 +133,7 @@ impl<'p> Lanes<'p> {
     fn index(&self, e: usize, episodes: &Episodes) -> u64 {
         let lane = episodes.indices.start + e as u64;
         match self.keep {
-            Keep::Rows(Some(steps)) => steps.episode(lane, self.lanes[e].before),
+            Keep::Rows(Some(steps)) => steps.episode(lane, self.stands[e].before),
             Keep::Rows(None) | Keep::Rewards => lane,
         }
     }
@@ -161,7 +161,7 @@ impl<'p> Lanes<'p> {
         for step in 0..self.stride {
             let mut running = false;
             for e in 0..lanes {
-                let lane = &mut self.lanes[e];
+                let lane = &mut self.stands[e];
                 if lane.end.is_some() {
                     continue;
                 }
@@ -183,7 +183,7 @@ impl<'p> Lanes<'p> {
             }
             actor.act(&obs, &columns, count, self.noisy.then_some(&mut self.noise[..]));
             for e in 0..lanes {
-                if self.lanes[e].end.is_some() {
+                if self.stands[e].end.is_some() {
                     continue;
                 }
                 let state = &states[e * state_dim..][..state_dim];
@@ -223,7 +223,7 @@ impl<'p> Lanes<'p> {
                 if let Some(end) = result.end {
                     let sees = &mut obs[e * obs_dim..][observations..obs_dim];
                     self.end((e, step), end, actor, episodes, sees);
-                } else if step + 1 == self.lanes[e].share {
+                } else if step + 1 == self.stands[e].share {
                     self.close(e, step, End::Truncated, true);
                 }
             }
@@ -232,7 +232,7 @@ impl<'p> Lanes<'p> {
     }
 
     fn error(&self, e: usize, step: usize, what: String, episodes: &Episodes) -> RolloutError {
-        let (seed, iteration, step) = (episodes.seed, episodes.iteration, step - self.lanes[e].began);
+        let (seed, iteration, step) = (episodes.seed, episodes.iteration, step - self.stands[e].began);
         RolloutError { seed, iteration, episode: self.index(e, episodes), step, what }
     }
 
@@ -251,8 +251,8 @@ impl<'p> Lanes<'p> {
             self.batch.faults.push(fault);
         }
         self.close(e, step, end, false);
-        if matches!(self.keep, Keep::Rows(Some(_))) && step + 1 < self.lanes[e].share {
-            let lane = &mut self.lanes[e];
+        if matches!(self.keep, Keep::Rows(Some(_))) && step + 1 < self.stands[e].share {
+            let lane = &mut self.stands[e];
             (lane.began, lane.before, lane.end) = (step + 1, lane.before + 1, None);
             self.start(e, self.index(e, episodes), actor, episodes, sees);
         }
@@ -260,7 +260,7 @@ impl<'p> Lanes<'p> {
 
     /// Writes down an episode that is over, unless its physics failed.
     fn close(&mut self, e: usize, step: usize, end: End, spent: bool) {
-        let (lane, environment) = (&mut self.lanes[e], &self.environments[e]);
+        let (lane, environment) = (&mut self.stands[e], &self.environments[e]);
         lane.end = Some((end, step + 1 - lane.began));
         let fresh = lane.observed.as_ref().map(|_| Moments::new(self.seen.len()));
         let observed = std::mem::replace(&mut lane.observed, fresh);
@@ -297,7 +297,7 @@ impl<'p> Lanes<'p> {
             if let Some(at) = faults.iter().position(|fault| fault.episode == index) {
                 return Err(faults.swap_remove(at));
             }
-            let (end, steps) = self.lanes[e].end.unwrap_or((End::Truncated, self.stride));
+            let (end, steps) = self.stands[e].end.unwrap_or((End::Truncated, self.stride));
             let rewards = &self.batch.reward[e * self.stride..][..steps];
             Ok(EpisodeResult {
                 discounted_return: discounted(rewards, discount),

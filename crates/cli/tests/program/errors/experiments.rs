@@ -79,6 +79,11 @@ pub(super) const CASES: &[Case] = &[
     file("A layer of no neurons", reach!("[controller]\nhidden = [16, 0]\n")),
     file("A list of the wrong length", reach!("[controller]\nobservation_scale = [1.0, 1.0, 1.0]\n")),
     file("A scale of zero", reach!("[controller]\nobservation_scale = [0.0]\n")),
+    file(
+        "Observations scaled by hand and by statistics",
+        reach!("[controller]\nnormalize_observations = true\nobservation_scale = [0.5]\n"),
+    ),
+    file("Fewer steps than lanes", reach!("[train]\nsteps_per_iteration = 10\n")),
     file("No unit", reach!("[noise]\neffort = 0.1\n")),
     file("A unit that is not known", reach!("[noise]\neffort = \"3 furlongs\"\n")),
     file("A unit of something else", reach!("[noise]\neffort = \"3 mm\"\n")),

@@ -16,9 +16,10 @@ use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, Observer
 const EXPERIMENT: &str = "experiment";
 
 /// The smallest trainings of every kind of thing that learns: method, what is not as in [`tiny`].
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 8] = [
     ("hwasp", ""),
     ("hwasp", "learner.algorithm=trpo baseline.kind=linear"),
+    ("episode", "controller.sees_design=true"),
     ("cmaes", ""),
     ("cmaes", "cmaes.separable=true cmaes.restarts=3 cmaes.popsize=4"),
     ("ars", "ars.variant=v2-t ars.directions=2"),

@@ -10,8 +10,6 @@ mod archive;
 mod baseline;
 mod draws;
 mod gae;
-#[cfg(test)]
-mod knob;
 mod learner;
 mod learner_kind;
 mod metrics;
@@ -20,6 +18,8 @@ mod ppo;
 mod search;
 mod settings;
 mod surrogate;
+#[cfg(test)]
+mod tests;
 mod trpo;
 
 pub use adam::{Adam, AdamConfig};

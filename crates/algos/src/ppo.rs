@@ -228,6 +228,4 @@ impl<P: Policy> Persist for Ppo<P> {
 }
 
 #[cfg(test)]
-mod draw_tests;
-#[cfg(test)]
 mod tests;

@@ -82,7 +82,11 @@ fn environment(experiment: &Experiment, steps: usize) -> f64 {
 fn engine(experiment: &Experiment, steps: usize) -> Result<f64, Box<dyn Error>> {
     let built = experiment.task.built();
     let files = Files::new(built.files.iter().map(|(path, bytes)| (path.clone(), bytes.clone())))?;
-    let main = built.files.keys().find(|path| path.ends_with(".xml")).ok_or("a robot has a model")?;
+    let main = built
+        .files
+        .keys()
+        .find(|path| Path::new(path).extension().is_some_and(|ending| ending == "xml"))
+        .ok_or("a robot has a model")?;
     let mut bare: Simulation = Spec::parse(main, &files)?.compile()?;
     let mut robot = built.deployment.make.make(None);
     let mut chance = stream(0, Purpose::Samples, 0, 0);

@@ -30,7 +30,7 @@ fn groups_efforts_and_observations_are_those_of_the_task() {
             let robot = world.make.make(None).spec().clone();
             assert_eq!(robot.horizon, spec.task.horizon, "{name}");
             assert_eq!(robot.observation.len(), spec.task.observations(), "{name}");
-            assert!(robot.effort.iter().all(|port| port.dimension == spec.task.effort_dimension()), "{name} {method}");
+            assert_eq!(robot.effort, spec.task.efforts(), "{name} {method}");
         }
     }
 }

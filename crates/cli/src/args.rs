@@ -123,6 +123,8 @@ pub(crate) enum MethodArg {
     Hwasp,
     /// PPO with the design in the action, as in the paper's HWasP-Minimal
     Minimal,
+    /// PPO with the design drawn once an episode and held
+    Episode,
     /// PPO on hardware that stays as it begins; only the controller learns
     Fixed,
     /// CMA-ES over controller and design
@@ -140,6 +142,7 @@ impl MethodArg {
         match self {
             Self::Hwasp => Method::Hwasp,
             Self::Minimal => Method::Minimal,
+            Self::Episode => Method::Episode,
             Self::Fixed => Method::Fixed,
             Self::Cmaes => Method::Cmaes,
             Self::Ars => Method::Ars,

@@ -166,8 +166,12 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
         iterations(spec, assembly)
     };
     let design = policy.space().names().len();
+    let drawn = match policy.drawn_actions() {
+        0 => String::new(),
+        drawn => format!(", {drawn} of them drawn once an episode"),
+    };
     format!(
-        "{} ({}) is sound\n  problem     {}, {design} design parameter{}\n  policy      {} parameters, action: {}\n  \
+        "{} ({}) is sound\n  problem     {}, {design} design parameter{}{drawn}\n  policy      {} parameters, action: {}\n  \
          training    {} steps: {training}\n",
         spec.name,
         spec.method.name(),

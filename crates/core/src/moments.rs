@@ -82,7 +82,9 @@ mod tests {
     fn two_parts_by_hand() {
         let part = |rows: [f64; 2]| {
             let mut part = Moments::new(1);
-            rows.iter().for_each(|&x| part.push(&[x]));
+            for x in rows {
+                part.push(&[x]);
+            }
             part
         };
         let mut whole = part([1.0, 2.0]);

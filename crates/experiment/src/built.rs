@@ -23,6 +23,12 @@ pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Res
         let (given, needed) = (built.optimum.len(), groups.len());
         return Err(format!("the optimum of {given} design groups is given, but there are {needed}").into());
     }
+    for name in [env, &built.deployment.env].into_iter().flat_map(|env| &env.shaped_by) {
+        if groups.iter().all(|group| group.name != *name) {
+            let known = listed(groups.iter().map(|group| group.name.as_str()));
+            return Err(format!("its world is made from `{name}`, which is no group of the design: {known}").into());
+        }
+    }
     if !(1..=MOST_STEPS).contains(&env.horizon) {
         return Err(format!("its horizon is {} steps, not between 1 and {MOST_STEPS}", env.horizon).into());
     }

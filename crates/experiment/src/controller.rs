@@ -30,6 +30,8 @@ pub struct ControllerSettings {
     pub normalize_observations: bool,
     /// Where they are, how far from zero what the network sees may be.
     pub observation_clip: f64,
+    /// Whether it sees the design beside the observation.
+    pub sees_design: bool,
     /// Scale of the last layer's initial weights.
     pub output_gain: f64,
     /// The method, where it searches the controller's parameters and no training gathers statistics; none once it is judged.
@@ -47,6 +49,7 @@ impl ControllerSettings {
             observation_scale: vec![1.0; observations],
             normalize_observations: false,
             observation_clip: 10.0,
+            sees_design: false,
             output_gain: 1.0,
             searched_by,
         }
@@ -67,6 +70,9 @@ impl Settings for ControllerSettings {
         fields.flag("normalize_observations", &mut self.normalize_observations, about);
         let about = "where they are, the controller sees nothing beyond plus or minus this";
         fields.number("observation_clip", &mut self.observation_clip, 0.1..=1e6, about);
+        let about = "whether it sees the design as well, each parameter scaled to ±1 by its limits: what was drawn for the episode, or \
+                     what the parameter is at the time";
+        fields.flag("sees_design", &mut self.sees_design, about);
         fields.number("output_gain", &mut self.output_gain, 0.0..=100.0, "scale of the last layer's initial weights");
         if self.normalize_observations {
             self.check_normalization(fields);

@@ -29,6 +29,7 @@ impl DesignSettings {
     pub(crate) fn new(method: Method, groups: Vec<Group>) -> Self {
         let placement = match method {
             Method::Hwasp => Place::Graph,
+            Method::Episode => Place::Episode,
             Method::Fixed => Place::Fixed,
             // A search moves the parameter, and the plant evaluates the law.
             Method::Minimal | Method::Cmaes | Method::Ars | Method::CmaesRl | Method::ArsRl => Place::Action,
@@ -43,10 +44,18 @@ impl DesignSettings {
         }
     }
 
-    /// Where parameter `i` sits.
+    /// Where parameter `i` sits. What the world's model is made from cannot change within an episode: it is drawn once an
+    /// episode where the others are in the graph or in the action.
     pub fn place_of(&self, i: usize) -> Place {
         let here = |placed: &&PlacedRange| i >= placed.first && placed.range.contains(&(i - placed.first));
-        self.placements.iter().find(here).map_or(self.placement, |placed| placed.place)
+        if let Some(placed) = self.placements.iter().find(here) {
+            return placed.place;
+        }
+        let shapes = |group: &Group| group.shapes_world && (group.first..group.first + group.count).contains(&i);
+        match self.placement {
+            Place::Graph | Place::Action if self.groups.iter().any(shapes) => Place::Episode,
+            place => place,
+        }
     }
 
     /// Whether any parameter sits in the graph, so that the effort is an action.
@@ -58,8 +67,10 @@ impl DesignSettings {
 
 impl Settings for DesignSettings {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
-        fields.default("hwasp: \"graph\", fixed: \"fixed\", else \"action\"");
-        fields.choice("placement", &mut self.placement, "where the parameters sit");
+        fields.default("hwasp: \"graph\", episode: \"episode\", fixed: \"fixed\", else \"action\"");
+        let about = "where the parameters sit; those that the world's model is made from are drawn once an episode where this is \
+                     `graph` or `action`";
+        fields.choice("placement", &mut self.placement, about);
         // Who says how wide the start is wants it to be so.
         if fields.is_set("logit_half_width") {
             self.initial = InitialDesign::Logit;

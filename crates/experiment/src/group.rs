@@ -10,6 +10,8 @@ choice! {
         Graph = "graph",
         /// In the action (HWasP-Minimal).
         Action = "action",
+        /// In the action, drawn once an episode and held.
+        Episode = "episode",
         /// Nowhere: it keeps its first value.
         Fixed = "fixed",
     }
@@ -30,4 +32,6 @@ pub struct Group {
     pub lo: f64,
     /// Upper limit of each, SI.
     pub hi: f64,
+    /// Whether the world's model is made from it, so that it stays as it is during an episode.
+    pub shapes_world: bool,
 }

@@ -10,6 +10,7 @@ mod built;
 mod catalogue;
 mod controller;
 mod design;
+mod efforts;
 mod experiment;
 mod group;
 mod initial;

@@ -9,6 +9,8 @@ choice! {
         Hwasp = "hwasp",
         /// The design is in the action.
         Minimal = "minimal",
+        /// The design is drawn once an episode and held.
+        Episode = "episode",
         /// The design stays as it begins.
         Fixed = "fixed",
         /// CMA-ES over controller and design.

@@ -1,9 +1,10 @@
 //! `[noise]`: standard deviations of the Gaussian that explores.
 
-use hwasp_core::{Dimension, parse_quantity};
-use hwasp_settings::{Fields, Item, Kind, Node, Section, Settings, with_unit};
+use hwasp_core::{Dimension, Port};
+use hwasp_settings::{Fields, Item, Kind, Settings};
 
 use crate::design::DesignSettings;
+use crate::efforts::{Efforts, item, skim};
 use crate::task::Task;
 
 /// `[noise]`: initial standard deviations, trained or annealed from there.
@@ -13,11 +14,11 @@ pub struct NoiseSettings {
     pub command: Vec<f64>,
     /// What that is annealed to.
     pub command_final: Option<Vec<f64>>,
-    /// Of the effort, SI; none where no parameter sits in the graph, and the effort is no action.
-    pub effort: Option<f64>,
-    /// What that is annealed to.
-    pub effort_final: Option<f64>,
-    /// Of a parameter in the action, as a fraction of its range.
+    /// Of each effort, SI; none where no parameter sits in the graph, and efforts are no action.
+    pub effort: Option<Vec<f64>>,
+    /// What each is annealed to, SI; none where it is not.
+    pub effort_final: Vec<Option<f64>>,
+    /// Of a parameter in the action, at every step or once an episode, as a fraction of its range.
     pub design: f64,
     /// What that is annealed to.
     pub design_final: Option<f64>,
@@ -28,69 +29,73 @@ pub struct NoiseSettings {
     /// Times the policy's learning rate.
     pub learning_rate_scale: f64,
     /// What the law hands to the plant.
-    effort_dimension: Dimension,
+    efforts: Vec<Port>,
 }
 
 /// Limits of a fraction.
 const FRACTION: std::ops::RangeInclusive<f64> = 1e-6..=10.0;
-/// Limits of the effort's, SI.
-const EFFORT: std::ops::RangeInclusive<f64> = 1e-6..=1e4;
+
+/// What efforts are explored by where nobody says otherwise, SI.
+fn usual(dimension: Dimension) -> f64 {
+    match dimension {
+        Dimension::Force => 3.0,
+        Dimension::Torque => 0.5,
+        _ => 0.1,
+    }
+}
 
 impl NoiseSettings {
     /// The defaults for a task and the places of its parameters.
     pub(crate) fn new(task: &Task, design: &DesignSettings) -> Self {
-        let dimension = task.effort_dimension();
-        let usual = task.built().effort_std.unwrap_or(match dimension {
-            Dimension::Force => 3.0,
-            Dimension::Torque => 0.5,
-            _ => 0.1,
-        });
-        Self { effort: design.is_in_graph().then_some(usual), ..Self::of(task.commands(), dimension) }
+        let (efforts, own) = (task.efforts(), task.built().effort_std);
+        let spread = |port: &Port| own.unwrap_or_else(|| usual(port.dimension));
+        let effort = design.is_in_graph().then(|| efforts.iter().map(spread).collect());
+        Self { effort, ..Self::of(task.commands(), efforts.to_vec()) }
     }
 
-    /// Of so many commands, without an effort.
-    pub(crate) fn of(commands: usize, effort_dimension: Dimension) -> Self {
+    /// Of so many commands, without efforts in the action.
+    pub(crate) fn of(commands: usize, efforts: Vec<Port>) -> Self {
         Self {
             command: vec![0.3; commands],
             command_final: None,
             effort: None,
-            effort_final: None,
+            effort_final: vec![None; efforts.len()],
             design: 0.3,
             design_final: None,
             anneal: [0.25, 0.75],
             train: true,
             learning_rate_scale: 1.0,
-            effort_dimension,
+            efforts,
         }
     }
 
     fn effort_fields(&mut self, fields: &mut Fields<'_, '_>) {
-        let (dimension, usual) = (self.effort_dimension, self.effort);
-        let written = |value: Option<f64>| value.map(|value| Item::Text(with_unit(value, dimension)));
-        let read = |value: &mut Option<f64>, key: &str, example: f64, section: &Section<'_>, node: &Node| {
-            if usual.is_none() {
-                skim(section, key, node, dimension);
-            } else if node.text() != Some("none") {
-                *value = section.checked_quantity(key, node, dimension, example, &EFFORT).or(*value);
-            }
+        let (ports, effort, last) = (&self.efforts, &mut self.effort, &mut self.effort_final);
+        let kind = || {
+            let list = Kind::List { of: Box::new(Kind::AnyQuantity), length: [1, usize::MAX], single: true };
+            Kind::Optional(Box::new(Kind::AnyOf(vec![list, Kind::Table(Box::new(Kind::AnyQuantity))])))
         };
-        let example = usual.unwrap_or(3.0);
-        let (effort, last) = (&mut self.effort, &mut self.effort_final);
+        let written = effort.as_ref().map(|effort| effort.iter().copied().map(Some).collect::<Vec<_>>());
+        let written = written.and_then(|effort| item(&effort, ports));
+        let about = "of the efforts, where a parameter sits in the graph: one for all, a list of one each, or by name, `{ knee = \"0.5 \
+                     N·m\", spring = \"3 N\" }`, where those left out keep their default";
         fields
             .default("\"3 N\"; a torque: \"0.5 N·m\", else 0.1 in SI; grasps: \"0.02 N·m\"")
             .limits("1e-6 to 1e4")
-            .kind(Kind::Optional(Box::new(Kind::AnyQuantity)))
-            .open("effort", "of the effort, where a parameter sits in the graph", written(*effort), |section, node| {
-                read(effort, "effort", example, section, node);
+            .kind(kind())
+            .open("effort", about, written, |section, node| {
+                let Some(effort) = effort else { return skim(section, "effort", node, ports) };
+                let read = Efforts { section, key: "effort", ports, examples: effort }.read(node);
+                for (to, from) in effort.iter_mut().zip(read) {
+                    *to = from.unwrap_or(*to);
+                }
             });
-        fields.limits("as above").kind(Kind::Optional(Box::new(Kind::AnyQuantity))).open(
-            "effort_final",
-            "annealed geometrically to this",
-            written(*last),
-            |section, node| {
-                read(last, "effort_final", 0.01 * example, section, node);
-            },
-        );
+        let (written, about) = (item(last, ports), "annealed geometrically to this; efforts left out stay as they are");
+        fields.limits("as above").kind(kind()).open("effort_final", about, written, |section, node| {
+            let Some(effort) = &self.effort else { return skim(section, "effort_final", node, ports) };
+            let examples: Vec<f64> = effort.iter().map(|std| 0.01 * std).collect();
+            *last = Efforts { section, key: "effort_final", ports, examples: &examples }.read(node);
+        });
     }
 }
 
@@ -103,7 +108,8 @@ impl Settings for NoiseSettings {
         let about = "annealed geometrically to this";
         fields.optional_each("command_final", &mut self.command_final, (commands, FRACTION), about);
         self.effort_fields(fields);
-        fields.number("design", &mut self.design, FRACTION, "of a parameter in the action, as a fraction of its range");
+        let about = "of a parameter in the action, at every step or once an episode, as a fraction of its range";
+        fields.number("design", &mut self.design, FRACTION, about);
         let last = self.design_final.map(Item::Float);
         let design_final = &mut self.design_final;
         let fraction = Kind::Number([*FRACTION.start(), *FRACTION.end()]);
@@ -118,15 +124,5 @@ impl Settings for NoiseSettings {
         fields.flag("train", &mut self.train, "whether the standard deviations are trained");
         let about = "times the policy's learning rate (PPO)";
         fields.number("learning_rate_scale", &mut self.learning_rate_scale, 0.0..=1000.0, about);
-    }
-}
-
-/// A key that says nothing here, because the effort is no action: a base table may have it for another method, whose
-/// effort may even have another unit. It still has to be a quantity.
-fn skim(section: &Section<'_>, key: &str, node: &Node, dimension: Dimension) {
-    let any = [Dimension::Force, Dimension::Length, Dimension::Speed, Dimension::Torque, dimension];
-    let fits = |text: &str| text == "none" || any.iter().any(|&d| parse_quantity(text, d).is_ok());
-    if !node.text().is_some_and(fits) {
-        section.wrong(key, node, "is not a quantity", Some("write it like \"3 N\"".into()));
     }
 }

@@ -31,7 +31,10 @@ pub(crate) fn read_placements(section: &Section<'_>, node: &Node, groups: &[Grou
                 let key = format!("placements.\"{}\"", shorten(name, 60));
                 let place = section.chosen(&key, &entry.node, Place::ALL);
                 match parse_range(name, groups) {
-                    Ok((group, range)) => placed.extend(place.map(|place| placed_range(group, range, place))),
+                    Ok((group, range)) => {
+                        let place = place.filter(|&place| may_sit(section, &key, &entry.node, group, place));
+                        placed.extend(place.map(|place| placed_range(group, range, place)));
+                    }
                     Err(message) => section.fault_at(&entry.key, &key, message, Some(example.clone())),
                 }
             }
@@ -39,7 +42,9 @@ pub(crate) fn read_placements(section: &Section<'_>, node: &Node, groups: &[Grou
         Value::List(items) if items.len() == count => {
             let members = groups.iter().flat_map(|group| (0..group.count).map(move |i| (group, i)));
             for (at, ((group, i), item)) in members.zip(items).enumerate() {
-                let place = section.chosen(&format!("placements[{at}]"), item, Place::ALL);
+                let key = format!("placements[{at}]");
+                let place = section.chosen(&key, item, Place::ALL);
+                let place = place.filter(|&place| may_sit(section, &key, item, group, place));
                 placed.extend(place.map(|place| placed_range(group, i..i + 1, place)));
             }
         }
@@ -53,6 +58,19 @@ pub(crate) fn read_placements(section: &Section<'_>, node: &Node, groups: &[Grou
     placed.sort_by_key(|p| (p.first, p.range.start, p.range.end));
     check_disjoint(section, node, &placed);
     placed
+}
+
+/// Whether a parameter of this group may sit there: what the world's model is made from cannot change within an episode.
+fn may_sit(section: &Section<'_>, key: &str, node: &Node, group: &Group, place: Place) -> bool {
+    let may = !(group.shapes_world && matches!(place, Place::Graph | Place::Action));
+    if !may {
+        let rest =
+            format!("is impossible: the world's model is made from {}, once at the start of an episode", group.name);
+        let hint = "write \"episode\" to have it drawn once an episode, or \"fixed\"; or leave it to a search, such as \
+                    --method cmaes";
+        section.wrong(key, node, &rest, Some(hint.to_owned()));
+    }
+    may
 }
 
 fn placed_range(group: &Group, range: Range<usize>, place: Place) -> PlacedRange {

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
-use hwasp_core::Dimension;
+use hwasp_core::{Dimension, Port};
 use hwasp_settings::{Field, Kind, described, object_schema};
 use serde_json::{Map, Value, json};
 
@@ -57,10 +57,11 @@ fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     let default = format!("\"{}\"", learners.algorithm());
     let algorithm = field("algorithm", Kind::Names(names), [&default, &learners.listed()], "what improves the policy");
     let train = TrainSettings::new(1000, true);
+    let force = Port { name: "force".to_owned(), dimension: Dimension::Force };
     let mut tables = vec![
         ("controller".to_owned(), described(&mut ControllerSettings::new(0, None))),
         ("design".to_owned(), described(&mut DesignSettings::new(Method::Hwasp, Vec::new()))),
-        ("noise".to_owned(), described(&mut NoiseSettings::of(1, Dimension::Force))),
+        ("noise".to_owned(), described(&mut NoiseSettings::of(1, vec![force]))),
         ("learner".to_owned(), vec![algorithm]),
     ];
     for (name, settings) in learners.names().zip(&learners.settings) {
@@ -80,7 +81,7 @@ fn purpose(table: &str) -> &'static str {
         "design" => "Where each design parameter sits and begins: [hardware.md](hardware.md) says what the places do.",
         "noise" => "The Gaussian noise by which training explores.",
         "learner" => {
-            "What the methods `hwasp`, `minimal` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`."
+            "What the methods `hwasp`, `minimal`, `episode` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`."
         }
         "baseline" => "What estimates values beside the learner.",
         "search" => "For the methods `cmaes`, `ars`, `cmaes-rl` and `ars-rl`.",

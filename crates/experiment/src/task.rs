@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use hwasp_core::Dimension;
+use hwasp_core::Port;
 use hwasp_problem::{AnyProblem, Built, FaultsTold};
 use hwasp_settings::{AnySettings, Item, Keys, Section, described, either, listed, read, written};
 
@@ -48,17 +48,19 @@ impl Task {
     }
 
     /// What the law hands to the plant.
-    pub fn effort_dimension(&self) -> Dimension {
-        self.built.training.env.effort.first().map_or(Dimension::None, |port| port.dimension)
+    pub fn efforts(&self) -> &[Port] {
+        &self.built.training.env.effort
     }
 
     /// The design parameters, named and limited as the problem's law has them.
     pub fn groups(&self) -> Vec<Group> {
         let mut first = 0;
+        let shaped_by = &self.built.training.env.shaped_by;
         let groups = self.built.training.law.design().groups().iter().map(|group| {
             let &hwasp_core::DesignGroup { dimension, count, lo, hi, .. } = group;
             first += count;
-            Group { name: group.name.clone(), first: first - count, dimension, count, lo, hi }
+            let shapes_world = shaped_by.contains(&group.name);
+            Group { name: group.name.clone(), first: first - count, dimension, count, lo, hi, shapes_world }
         });
         groups.collect()
     }

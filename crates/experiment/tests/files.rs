@@ -100,7 +100,7 @@ fn options_need_no_quotes() {
         .with_assignment("design.initial=middle")
         .with_option("--env-steps 1e6".into(), "train.env_steps", "1e6");
     let spec = resolve(layers, None).unwrap();
-    assert_eq!(spec.noise.effort.unwrap(), 2.5);
+    assert_eq!(spec.noise.effort.as_deref(), Some(&[2.5][..]));
     assert_eq!(spec.train.env_steps, 1_000_000);
     assert_eq!(spec.design.initial, InitialDesign::Middle);
     assert_eq!(stiffness(&spec).base.effort_clip, Some(5.0));

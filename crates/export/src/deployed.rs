@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Actor, EnvSpec, HardwarePolicy, Normalizer};
+use hwasp_core::{Actor, EnvSpec, HardwarePolicy, Normalizer, PolicySpec};
 use hwasp_diff::Activation;
 use hwasp_experiment::Experiment;
 use hwasp_training::{AssembleError, Assembly, World};
@@ -17,7 +17,10 @@ pub(super) struct Deployed {
     pub(super) world: World,
     pub(super) env: EnvSpec,
     pub(super) policy: Arc<HardwarePolicy>,
-    /// The controller's parameters: its layers', and centre and scale of what it sees where they are among them.
+    /// Where the law's commands are among the environment's.
+    pub(super) reads: Vec<usize>,
+    /// The controller's parameters: its layers', and centre and scale of what it sees where they are among them. One that saw the
+    /// design needs no such input any more: the hardware stays as it is.
     pub(super) params: Vec<f32>,
     /// SI, as built.
     pub(super) design: Vec<f64>,
@@ -37,14 +40,15 @@ impl Deployed {
     pub(super) fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
         let world = assembly.worlds.deployment.clone();
         let design = assembly.worlds.training.law.as_built(&assembly.policy.design(params));
-        Ok(Self {
-            spec: assembly.experiment().clone(),
-            env: world.make.make(None).spec().clone(),
-            policy: Arc::new(assembly.deployed(&design)?),
-            params: assembly.policy.controller_params(params).to_vec(),
-            world,
-            design,
-        })
+        let env = world.make.make(None).spec().clone();
+        let mut policy = assembly.deployed(&design)?;
+        let mut params = assembly.policy.controller_params(params).to_vec();
+        if policy.spec().sees_design {
+            params = with_design_folded(&policy, &params, &design);
+            policy = HardwarePolicy::new(PolicySpec { sees_design: false, ..policy.spec().clone() }, &env)?;
+        }
+        let reads = world.law.reads(&env.command).expect("the policy was composed of this law and these commands");
+        Ok(Self { spec: assembly.experiment().clone(), env, policy: Arc::new(policy), reads, params, world, design })
     }
 
     /// What the controller sees of an observation.
@@ -99,10 +103,29 @@ impl Deployed {
                 let limited = actor.action(r).iter().zip(&self.env.command).map(|(c, port)| c.clamp(port.lo, port.hi));
                 let at = commands.len();
                 commands.extend(limited);
-                self.world.law.effort(&self.design, &commands[at..], state, &mut effort);
+                let read: Vec<f64> = self.reads.iter().map(|&c| commands[at + c]).collect();
+                self.world.law.effort(&self.design, &read, state, &mut effort);
                 efforts.extend_from_slice(&effort);
             }
         }
         (commands, efforts)
     }
+}
+
+/// The parameters of a controller that does not see the design, and does what this one does on hardware of `design` (SI): what
+/// its first layer makes of the design is the same at every step, and goes into the biases.
+fn with_design_folded(policy: &HardwarePolicy, params: &[f32], design: &[f64]) -> Vec<f32> {
+    let width = policy.controller().sizes()[1];
+    let mut seen = vec![0.0; design.len()];
+    policy.see_design(design, &mut seen);
+    let (kept, rest) = params.split_at(policy.observations() * width);
+    let (of_design, rest) = rest.split_at(seen.len() * width);
+    let mut folded = params.to_vec();
+    folded.truncate(kept.len());
+    folded.extend(rest);
+    for (j, bias) in folded[kept.len()..][..width].iter_mut().enumerate() {
+        let added = seen.iter().zip(of_design.chunks_exact(width)).map(|(&x, row)| f64::from(x) * f64::from(row[j]));
+        *bias = (f64::from(*bias) + added.sum::<f64>()) as f32;
+    }
+    folded
 }

@@ -6,15 +6,34 @@ use hwasp_diff::{Binary, Unary};
 
 use crate::error::ExprError;
 use crate::exponents::Quantity;
-use crate::formulas::{Formulas, Part, Value};
-use crate::parser::component;
+use crate::formulas::{Formulas, MOST_STEPS, Part, Value};
+use crate::parser::{component, parse};
 use crate::scope::{NameError, Scope};
+use crate::suggest::suggest;
 use crate::syntax::{Index, Node, Operator, Path, Tree, short};
 
 /// The longest vector.
 const LONGEST: usize = 10_000;
 /// The largest whole exponent that is written out as products.
 const LARGEST_POWER: f64 = 16.0;
+
+impl Formulas {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn read(&mut self, text: &str, scope: &mut dyn Scope) -> Result<Value, ExprError> {
+        let tree = parse(text)?;
+        let value = Checker { formulas: self, scope }.value(&tree)?;
+        if self.is_full() {
+            let message = format!("the formulas have more than {MOST_STEPS} operations");
+            return Err(
+                ExprError::new(0..text.len(), message).hint("vectors are shorter where a slice will do: x[0:3]")
+            );
+        }
+        Ok(value)
+    }
+}
 
 /// Reads one formula.
 pub(crate) struct Checker<'c> {
@@ -333,5 +352,5 @@ fn name_error(error: NameError, path: &Path, span: &Range<usize>) -> ExprError {
     let message =
         if at == 0 { format!("`{part}` is not known") } else { format!("`{}` has no `{part}`", shown(path, at)) };
     let told = ExprError::new(here, message);
-    crate::functions::suggest(told, &part, &error.known)
+    suggest(told, &part, &error.known)
 }

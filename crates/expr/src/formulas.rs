@@ -4,14 +4,10 @@ use std::collections::HashMap;
 
 use hwasp_diff::{Binary, Program, Scalar, Unary, Var};
 
-use crate::check::Checker;
-use crate::error::ExprError;
 use crate::exponents::Quantity;
-use crate::parser::parse;
-use crate::scope::Scope;
 
 /// The most operations of all formulas together: what is beyond was written by no person.
-const MOST_STEPS: usize = 200_000;
+pub(crate) const MOST_STEPS: usize = 200_000;
 
 /// A scalar of [`Formulas`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -42,22 +38,6 @@ pub(crate) enum Step {
 }
 
 impl Formulas {
-    /// Reads a formula.
-    ///
-    /// # Errors
-    /// The first thing that is wrong with it.
-    pub fn read(&mut self, text: &str, scope: &mut dyn Scope) -> Result<Value, ExprError> {
-        let tree = parse(text)?;
-        let value = Checker { formulas: self, scope }.value(&tree)?;
-        if self.steps.len() > MOST_STEPS {
-            let message = format!("the formulas have more than {MOST_STEPS} operations");
-            return Err(
-                ExprError::new(0..text.len(), message).hint("vectors are shorter where a slice will do: x[0:3]")
-            );
-        }
-        Ok(value)
-    }
-
     /// Input column `i` of the program: a value that changes from step to step.
     pub fn column(&mut self, i: usize) -> Part {
         self.push(Step::Column(i))

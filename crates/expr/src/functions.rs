@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use hwasp_diff::{Binary, Unary};
-use hwasp_settings::nearest;
 
 use crate::check::{Checker, together};
 use crate::error::ExprError;
@@ -11,6 +10,7 @@ use crate::exponents::Quantity;
 use crate::formulas::{Part, Value};
 use crate::reference::FUNCTIONS;
 use crate::scope::Distribution;
+use crate::suggest::suggest;
 use crate::syntax::{Tree, short};
 
 /// Functions of pure numbers that are one operation.
@@ -273,18 +273,4 @@ fn at(value: &Value, i: usize) -> Part {
 
 pub(crate) fn scalar(part: Part, quantity: Quantity) -> Value {
     Value { parts: vec![part], quantity }
-}
-
-/// Adds the nearest of the known names, or all of them where there are few.
-pub(crate) fn suggest(error: ExprError, word: &str, known: &[String]) -> ExprError {
-    if let Some(near) = nearest(word, known.iter().map(String::as_str)) {
-        return error.hint(format!("did you mean `{near}`?"));
-    }
-    if known.is_empty() {
-        return error;
-    }
-    let shown: Vec<&str> = known.iter().take(30).map(String::as_str).collect();
-    let rest =
-        if known.len() > shown.len() { format!(" and {} more", known.len() - shown.len()) } else { String::new() };
-    error.hint(format!("known here: {}{rest}", shown.join(", ")))
 }

@@ -49,6 +49,7 @@ mod parser;
 mod quaternion;
 mod reference;
 mod scope;
+mod suggest;
 mod syntax;
 mod units;
 

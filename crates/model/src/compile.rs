@@ -106,15 +106,7 @@ impl Compiler<'_, '_> {
         let Watched { observed, terms, ends, success, kinds } = self.step();
         let forces = self.forces();
         let delays = self.delays();
-        if !settings.keyframe.is_empty() && !self.names.anatomy.keyframes.contains(&settings.keyframe) {
-            let known = self.names.anatomy.keyframes.iter().map(String::as_str);
-            let hint = match nearest(&settings.keyframe, known.clone()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if self.names.anatomy.keyframes.is_empty() => "it has none that is named".to_owned(),
-                None => format!("it has {}", listed(known)),
-            };
-            self.refuse(&["keyframe"], format!("the model has no keyframe `{}`", settings.keyframe), Some(hint));
-        }
+        self.check_keyframe();
         if !self.sound {
             return None;
         }
@@ -124,12 +116,7 @@ impl Compiler<'_, '_> {
             draws: stage.map_or_else(Vec::new, |stage| compiler.names.columns.draws_of(stage)),
         };
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
-        let (read, _) = self.formulas.inputs(&law);
-        let command = |at: usize| match self.names.columns.all()[at] {
-            Column::Command(i) => Some(i),
-            _ => None,
-        };
-        let law_reads: Vec<usize> = read.into_iter().filter_map(command).collect();
+        let law_reads = self.commands_of(&law);
         let (law, states) = self.traced_law(&space, &law)?;
         let shaping = shaping.map(|found| Shaping {
             formula: formula(self, None, numbered(&found.parts)),
@@ -153,11 +140,9 @@ impl Compiler<'_, '_> {
         let other = if settings.kinds.is_empty() { "all" } else { "other" };
         let mut env = self.env(&observed, &law);
         // What only the law reads is not sampled where the law's efforts are.
-        let (read, _) = self.formulas.inputs(&outputs);
-        let by_task = |i: usize| read.iter().any(|&at| self.names.columns.all()[at] == Column::Command(i));
-        for (i, port) in env.command.iter_mut().enumerate() {
-            port.direct = direct[i].is_some() || by_task(i) || !law_reads.contains(&i);
-        }
+        let by_task = self.commands_of(&outputs);
+        let of_law = |i: usize| direct[i].is_none() && law_reads.contains(&i) && !by_task.contains(&i);
+        env.command.iter_mut().enumerate().for_each(|(i, port)| port.direct = !of_law(i));
         let groups = shaping.iter().flat_map(|shaping: &Shaping| &shaping.parameters);
         env.shaped_by = groups.map(|&i| uniforms[i].clone()).collect();
         let derived = |column: &Column| matches!(column, Column::Engine(reading) if reading.is_derived());
@@ -204,6 +189,28 @@ impl Compiler<'_, '_> {
                 None
             }
         }
+    }
+
+    fn check_keyframe(&mut self) {
+        let settings = self.settings;
+        if !settings.keyframe.is_empty() && !self.names.anatomy.keyframes.contains(&settings.keyframe) {
+            let known = self.names.anatomy.keyframes.iter().map(String::as_str);
+            let hint = match nearest(&settings.keyframe, known.clone()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if self.names.anatomy.keyframes.is_empty() => "it has none that is named".to_owned(),
+                None => format!("it has {}", listed(known)),
+            };
+            self.refuse(&["keyframe"], format!("the model has no keyframe `{}`", settings.keyframe), Some(hint));
+        }
+    }
+
+    /// The commands that some scalars depend on.
+    fn commands_of(&self, parts: &[Part]) -> Vec<usize> {
+        let command = |at: usize| match self.names.columns.all()[at] {
+            Column::Command(i) => Some(i),
+            _ => None,
+        };
+        self.formulas.inputs(parts).0.into_iter().filter_map(command).collect()
     }
 
     fn refuse(&mut self, keys: &[&str], message: impl Into<String>, hint: Option<String>) {

@@ -28,6 +28,8 @@ impl Problem for ModelProblem {
         vec![
             Preset::new("balanced-arm", include_str!("../../../experiments/balanced-arm.toml"))
                 .with_files(&[("robots/arm.xml", include_str!("../../../experiments/robots/arm.xml"))]),
+            Preset::new("hopper", include_str!("../../../experiments/hopper.toml"))
+                .with_files(&[("robots/hopper.xml", include_str!("../../../experiments/robots/hopper.xml"))]),
         ]
     }
 

@@ -66,7 +66,8 @@ fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Mark
     for (i, port) in seen.iter().enumerate() {
         // The batch has what the controller reads: centred and scaled, and within its clip where it has one.
         let (centre, scale) = (normalizer.center()[i], normalizer.scale()[i]);
-        let values: Vec<f64> = column(&batch.obs, seen.len(), i).iter().map(|value| centre + scale * value).collect();
+        let width = batch.obs.len() / batch.rows().max(1);
+        let values: Vec<f64> = column(&batch.obs, width, i).iter().map(|value| centre + scale * value).collect();
         traces.push((format!("observed: {}", spaced(&port.name)), port.dimension.si(), values));
     }
     for (i, port) in given.iter().enumerate() {

@@ -31,9 +31,10 @@ pub const UNSCALED: Settings = &[
 ];
 
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 11] = [
+pub const KINDS: [(&str, Settings); 12] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
+    ("episode", &[("controller.sees_design", "true")]),
     ("hwasp", &[("learner.algorithm", "trpo"), ("baseline.kind", MLP)]),
     ("cmaes", &[]),
     ("cmaes", &[("cmaes.separable", "true"), ("cmaes.restarts", "2")]),

@@ -214,6 +214,7 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
     let placements = first.iter().enumerate().map(|(i, &value)| match spec.design.place_of(i) {
         Place::Graph => Placement::Graph,
         Place::Action => Placement::Action,
+        Place::Episode => Placement::Episode,
         Place::Fixed => Placement::Fixed(value),
     });
     let noise = &spec.noise;
@@ -224,6 +225,7 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
     };
     let finals = noise.command_final.as_ref();
     let commands = noise.command.iter().enumerate();
+    let efforts = noise.effort.iter().flatten().enumerate();
     PolicySpec {
         hidden: spec.controller.hidden.clone(),
         activation: match spec.controller.activation {
@@ -233,13 +235,13 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
         squash: spec.controller.squash,
         observation_center: spec.controller.observation_center.clone(),
         observation_scale: spec.controller.observation_scale.clone(),
-        sees_design: false,
+        sees_design: spec.controller.sees_design,
         normalize: spec.controller.normalize_observations.then_some(spec.controller.observation_clip),
         law: law.clone(),
         placements: placements.collect(),
         noise: Noise {
             command: commands.map(|(i, &first)| spread(first, finals.map(|last| last[i]))).collect(),
-            effort: vec![spread(noise.effort.unwrap_or(1.0), noise.effort_final); law.ports().effort.len()],
+            effort: efforts.map(|(i, &first)| spread(first, noise.effort_final.get(i).copied().flatten())).collect(),
             design: spread(noise.design, noise.design_final),
             // A search without noise has nothing to spread, and one with a training inside leaves that to the training.
             train: noise.train && (!spec.method.searches() || (spec.search.noise && !spec.method.trains_inside())),

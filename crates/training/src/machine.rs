@@ -35,6 +35,8 @@ fn other_world(one: &World, other: &World) -> Option<&'static str> {
         Some("the motors or their limits")
     } else if one.law.ports() != other.law.ports() || ports(&one.env) != ports(&other.env) {
         Some("what goes into the controller and the law and what comes out")
+    } else if one.env.shaped_by != other.env.shaped_by {
+        Some("what of the design the world's model is made from")
     } else if one.law.program() != other.law.program() || !builds_alike(&one.law, &other.law) {
         Some("the law")
     } else {
@@ -58,6 +60,8 @@ fn other_policy(one: &PolicySpec, other: &PolicySpec) -> Option<&'static str> {
         Some("the controller's network")
     } else if scaling(one) != scaling(other) {
         Some("how the controller sees what it observes")
+    } else if one.sees_design != other.sees_design {
+        Some("whether the controller sees the design")
     } else if one.placements != other.placements {
         Some("where the design's parameters sit, or the values of those that are fixed")
     } else if one.noise.train != other.noise.train {

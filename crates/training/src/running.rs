@@ -108,7 +108,9 @@ mod tests {
 
     fn moments(rows: &[f64]) -> Moments {
         let mut moments = Moments::new(1);
-        rows.iter().for_each(|&x| moments.push(&[x]));
+        for &x in rows {
+            moments.push(&[x]);
+        }
         moments
     }
 

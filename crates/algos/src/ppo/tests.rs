@@ -1,5 +1,7 @@
 //! PPO's loss, gradient and metrics against arithmetic by hand.
 
+mod draws;
+
 use std::ops::Range;
 
 use hwasp_core::{End, Episode, ParamGroup, ParamKind, Rows, Serial, gaussian};

@@ -52,7 +52,7 @@ fn controller(graph: &mut Graph, deployed: &Deployed, outside: ElementType) {
     if let Some([least, most]) = &seen {
         graph.node("Max", &[&at, least.0], "observation.above");
         graph.node("Min", &["observation.above", most.0], "observation.clipped");
-        at = "observation.clipped".to_owned();
+        "observation.clipped".clone_into(&mut at);
     }
     if outside == ElementType::Float64 {
         at = graph.cast(&at, "controller.input", ElementType::Float32);
@@ -92,7 +92,10 @@ fn hardware(graph: &mut Graph, deployed: &Deployed) {
     }
     let names = |prefix: &str, ports: &[String]| ports.iter().map(|port| format!("{prefix}.{port}")).collect();
     let ports = deployed.world.law.ports();
-    let mut columns = split(graph, COMMAND, names(COMMAND, &ports.command));
+    let commands: Vec<String> = deployed.env.command.iter().map(|port| port.name.clone()).collect();
+    let commands = split(graph, COMMAND, names(COMMAND, &commands));
+    // The law need not read every command.
+    let mut columns: Vec<Value> = deployed.reads.iter().map(|&c| commands[c].clone()).collect();
     columns.extend(split(graph, STATE, names(STATE, &ports.state)));
     let efforts = law(graph, program, &uniforms, &columns);
     let efforts: Vec<String> = efforts.into_iter().map(|effort| as_column(graph, effort)).collect();

@@ -40,6 +40,10 @@ fn method(spec: &Experiment) -> String {
             "The mechanism acts in the simulator, its design is a part of the action, and both are trained by policy gradients \
              ({learner}): HWasP-Minimal of Chen, He and Ciocarlie (CoRL 2020)."
         ),
+        Method::Episode => format!(
+            "The mechanism acts in the simulator. Its design is drawn once an episode and held, and what an episode returns trains \
+             the distribution that it is drawn from, together with the controller, by policy gradients ({learner})."
+        ),
         Method::Fixed => {
             format!(
                 "The design stays where the experiment begins; policy gradients ({learner}) train the controller alone."

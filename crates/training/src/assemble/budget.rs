@@ -116,7 +116,7 @@ impl Assembly {
             Method::Cmaes | Method::CmaesRl => {
                 CmaesConfig { popsize: spec.cmaes.popsize, ..CmaesConfig::default() }.first_popsize(dimension)
             }
-            Method::Hwasp | Method::Minimal | Method::Fixed => return None,
+            Method::Hwasp | Method::Minimal | Method::Episode | Method::Fixed => return None,
         };
         Some((popsize, self.candidate_steps()))
     }

@@ -90,7 +90,8 @@ fn experiment(
     spec.design.placement = Place::Fixed;
     spec.design.placements.clear();
     spec.noise.command = last_noise(run, params);
-    (spec.noise.command_final, spec.noise.effort, spec.noise.effort_final) = (None, None, None);
+    (spec.noise.command_final, spec.noise.effort) = (None, None);
+    spec.noise.effort_final.fill(None);
     // Schedules of task, noise and learning rate do not begin again.
     spec.train.progress_start = 1.0;
     spec.train.env_steps = env_steps;
@@ -102,8 +103,12 @@ fn experiment(
 fn last_noise(run: &Assembly, params: &[f32]) -> Vec<f64> {
     let mut log_std = vec![0.0; run.policy.action_dim()];
     run.policy.log_std(params, 1.0, &mut log_std);
-    let commands = &run.worlds.training.env.command;
-    // The commands are the last components of an action.
-    let last = log_std[log_std.len() - commands.len()..].iter().zip(commands);
-    last.map(|(log_std, port)| (f64::from(*log_std).exp() / (port.hi - port.lo)).clamp(1e-6, 10.0)).collect()
+    let noise = &run.experiment().noise;
+    let last =
+        run.worlds.training.env.command.iter().enumerate().map(|(c, port)| match run.policy.action_of_command(c) {
+            Some(j) => f64::from(log_std[j]).exp() / (port.hi - port.lo),
+            // It was not sampled.
+            None => noise.command_final.as_ref().unwrap_or(&noise.command)[c],
+        });
+    last.map(|std| std.clamp(1e-6, 10.0)).collect()
 }

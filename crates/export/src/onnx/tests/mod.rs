@@ -5,7 +5,7 @@ mod runtime;
 
 use std::collections::BTreeSet;
 
-use hwasp_core::{Policy, Purpose, Stream, stream};
+use hwasp_core::{Actor, Policy, Purpose, Stream, stream};
 use hwasp_diff::{Program, Scalar};
 use hwasp_training::Assembly;
 use prost::Message;
@@ -28,6 +28,10 @@ fn deployed(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Deploy
     let layers = hwasp_testing::layers(experiment);
     let layers = settings.iter().fold(layers, |layers, (key, value)| layers.with_override(key, value));
     let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap();
+    Deployed::new(&assembly, &random_params(&assembly)).unwrap()
+}
+
+fn random_params(assembly: &Assembly) -> Vec<f32> {
     let mut random = stream(5, Purpose::Samples, 0, 0);
     let inputs = assembly.policy.obs_dim();
     let mut params: Vec<f32> = (0..assembly.policy.param_count()).map(|_| random.random_range(-0.3..0.3)).collect();
@@ -36,7 +40,7 @@ fn deployed(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Deploy
     // Scales of observations are positive.
     let scaling = assembly.policy.normalizer_params();
     params[scaling.start + scaling.len() / 2..scaling.end].iter_mut().for_each(|scale| *scale = scale.abs() + 0.05);
-    Deployed::new(&assembly, &params).unwrap()
+    params
 }
 
 /// The models of it, read back.
@@ -101,6 +105,36 @@ fn agree(experiment: &str, method: &str, settings: &[(&str, &str)]) {
 fn springs_in_the_graph_in_the_action_and_fixed() {
     for method in ["hwasp", "minimal", "fixed"] {
         agree("mass-spring", method, &[]);
+    }
+}
+
+/// A controller that saw the design is exported for hardware that stays: with the observation as its only input it does what
+/// the trained one does.
+#[test]
+fn a_controller_that_saw_the_design() {
+    for (method, hidden) in [("episode", "[32, 32]"), ("hwasp", "[]")] {
+        let settings = [("controller.sees_design", "true"), ("controller.hidden", hidden)];
+        agree("mass-spring", method, &settings);
+        let layers =
+            settings.iter().fold(hwasp_testing::layers("mass-spring"), |l, (key, value)| l.with_override(key, value));
+        let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap();
+        let exported = deployed("mass-spring", method, &settings);
+        assert_eq!((assembly.policy.obs_dim(), exported.policy.obs_dim()), (12, 2));
+        let params = random_params(&assembly);
+        let design = assembly.built(&params);
+        let trained = assembly.deployed(&design).unwrap();
+        let (observations, states) = inputs(&exported, 20);
+        let (commands, _) = exported.act(&observations, &states);
+        let mut actor = Actor::new(&trained, trained.controller_params(&params), 1.0, 1);
+        for (r, seen) in observations.chunks_exact(2).enumerate() {
+            let mut input = [0.0; 12];
+            trained.normalizer(&[]).apply(&[f64::from(seen[0]), f64::from(seen[1])], &mut input[..2]);
+            trained.see_design(&design, &mut input[2..]);
+            actor.act(&input, &states[r * 4..][..4], 1, None);
+            let (lo, hi) = (exported.env.command[0].lo, exported.env.command[0].hi);
+            let off = (actor.action(0)[0].clamp(lo, hi) - commands[r]).abs() / (hi - lo);
+            assert!(off < MOST, "{method}: off by {off} of the motors' range");
+        }
     }
 }
 

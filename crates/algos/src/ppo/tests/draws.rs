@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use hwasp_core::{End, Episode, EpisodeKind, Episodes, ParamGroup, ParamKind, Rows, Serial, gaussian};
 
-use super::optimiser::RowSums;
-use super::*;
-use crate::knob::{BEST, LIMITS, knob};
+use super::super::optimiser::RowSums;
+use super::super::*;
+use crate::tests::knob::{BEST, LIMITS, knob};
 
 /// A draw with the mean m, and a command whose mean is w·o; the parameters are m, w and both log σ.
 struct Pair([ParamGroup; 2]);
@@ -239,8 +239,8 @@ fn epochs_end_where_draws_have_gone_too_far() {
     assert_eq!(epochs(&batch), 1.0);
 }
 
-/// The gradient of an update, in expectation, is that of the return: J(m) = Σ_t γ^t/T·(luck - (m - best)² - σ²), so that
-/// dJ/dm = -2·(m - best)·Σ_t γ^t/T, and dm/du = range·s·(1 - s) of the squash s. An update divides by its rows, of which there
+/// The gradient of an update, in expectation, is that of the return: `J(m) = Σ_t γ^t/T·(luck - (m - best)² - σ²)`, so that
+/// `dJ/dm = -2·(m - best)·Σ_t γ^t/T`, and dm/du = range·s·(1 - s) of the squash s. An update divides by its rows, of which there
 /// are T in an episode. 200 batches of 50 episodes, with fixed streams: the mean is within four standard errors, which are
 /// less than a twentieth of it; in 50 steps as in one. Generalised advantages would have seen (1 - (γλ)^50)/(1 - γλ) of 50
 /// steps, a third of it.

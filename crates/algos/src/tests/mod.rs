@@ -1,0 +1,3 @@
+//! What the tests of several learners share.
+
+pub(crate) mod knob;

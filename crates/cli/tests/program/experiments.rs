@@ -2,6 +2,8 @@
 
 use crate::sandbox::Sandbox;
 
+/// Without the engine there are fewer.
+#[cfg(feature = "mujoco")]
 #[test]
 fn the_list() {
     insta::assert_snapshot!(Sandbox::new("list").transcript(&["list"]));

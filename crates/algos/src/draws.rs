@@ -6,8 +6,8 @@
 //! E[Σ_t ∇log π(a_t | s_t)·A_t + ∇log p(d)·A]
 //! ```
 //!
-//! with A = `Σ_t γ^t·r_t - b` the worth of the draw, b any number that does not depend on d, and γ^t left out of the first sum
-//! as usual. Generalised advantages would credit d with the first few rewards alone. Learners take the mean over the rows of a
+//! where `A = Σ_t γ^t·r_t - b` is the worth of the draw, b any number that does not depend on d, and γ^t is left out of the first
+//! sum as usual. Generalised advantages would credit d with the first few rewards alone. Learners take the mean over the rows of a
 //! batch: the sum over its episodes, divided by the number of rows. So a draw weighs as much as one step, not as much as all
 //! of an episode's.
 //!

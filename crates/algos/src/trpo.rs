@@ -43,7 +43,7 @@ fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
 ///
 /// An update is one step: minimise -mean(ρ·A) under mean KL(old || new) ≤ `max_kl` (14). Its direction is H⁻¹g with g the
 /// gradient of the objective and H the curvature of the divergence, its length √(2·`max_kl`/xᵀHx), shortened until it
-/// holds what it promises. What is [drawn](crate::draws) once an episode counts once an episode in objective, divergence and
+/// holds what it promises. What is drawn once an episode counts once an episode in objective, divergence and
 /// curvature: each is the sum over steps and draws, divided by the number of steps.
 ///
 /// | metric | meaning |

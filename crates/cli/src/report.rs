@@ -133,7 +133,7 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     }
     if evaluation.success.len() > shown {
         let kinds = evaluation.success.len() - shown;
-        let _ = writeln!(text, "  {:<20} --per-shape tells the rates of {kinds} shapes", "");
+        let _ = writeln!(text, "  {:<20} --per-shape tells the rates of {kinds} kinds", "");
     }
     if evaluation.discarded_episodes > 0 {
         let _ = writeln!(text, "  {} episodes discarded: their physics failed", evaluation.discarded_episodes);
@@ -242,7 +242,7 @@ mod tests {
         };
         let rate = "75.0% 3 of 4, 95 % interval [30.0, 95.0]";
         assert_eq!(lines(true), [format!("success {rate}"), format!("box {rate}"), format!("sphere {rate}")]);
-        assert_eq!(lines(false), [format!("success {rate}"), "--per-shape tells the rates of 2 shapes".into()]);
+        assert_eq!(lines(false), [format!("success {rate}"), "--per-shape tells the rates of 2 kinds".into()]);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use Placement::{Action, Episode, Fixed, Graph};
 
 /// Its context is the design that it was told before its start, or no number where it was told none. An episode lasts from one
 /// step to six; the reward is what the plant was given.
-struct Teller {
+struct Listener {
     spec: EnvSpec,
     told: Option<Vec<f64>>,
     design: Vec<f64>,
@@ -31,7 +31,7 @@ fn spec(shaped_by: &[&str]) -> EnvSpec {
     spec
 }
 
-impl Environment for Teller {
+impl Environment for Listener {
     fn spec(&self) -> &EnvSpec {
         &self.spec
     }
@@ -60,7 +60,7 @@ impl Environment for Teller {
 fn sampler(policy: PolicySpec, env: &EnvSpec) -> Sampler {
     let spec = env.clone();
     let make = move |_: Option<usize>| -> Box<dyn Environment> {
-        Box::new(Teller { spec: spec.clone(), told: None, design: Vec::new(), left: 0 })
+        Box::new(Listener { spec: spec.clone(), told: None, design: Vec::new(), left: 0 })
     };
     Sampler::new(Arc::new(HardwarePolicy::new(policy, env).unwrap()), Arc::new(make), None)
 }

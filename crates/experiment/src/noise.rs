@@ -47,9 +47,9 @@ fn usual(dimension: Dimension) -> f64 {
 impl NoiseSettings {
     /// The defaults for a task and the places of its parameters.
     pub(crate) fn new(task: &Task, design: &DesignSettings) -> Self {
-        let (efforts, own) = (task.efforts(), task.built().effort_std);
-        let spread = |port: &Port| own.unwrap_or_else(|| usual(port.dimension));
-        let effort = design.is_in_graph().then(|| efforts.iter().map(spread).collect());
+        let (efforts, own) = (task.efforts(), &task.built().effort_std);
+        let spread = |(i, port): (usize, &Port)| own.get(i).copied().flatten().unwrap_or_else(|| usual(port.dimension));
+        let effort = design.is_in_graph().then(|| efforts.iter().enumerate().map(spread).collect());
         Self { effort, ..Self::of(task.commands(), efforts.to_vec()) }
     }
 

@@ -87,24 +87,26 @@ impl Deployed {
         let mut inputs = vec![0.0_f32; BLOCK * seen];
         let mut columns = vec![0.0; BLOCK * state_dim];
         let mut effort = vec![0.0; self.env.effort.len()];
-        for (observations, states) in observations.chunks(BLOCK * seen).zip(states.chunks(BLOCK * state_dim)) {
+        for (block, observations) in observations.chunks(BLOCK * seen).enumerate() {
             let rows = observations.len() / seen;
+            // A law may read no state.
+            let state = |r: usize| &states[(block * BLOCK + r) * state_dim..][..state_dim];
             for (seen, input) in observations.chunks_exact(seen).zip(inputs.chunks_exact_mut(seen)) {
                 let seen: Vec<f64> = seen.iter().map(|&x| f64::from(x)).collect();
                 normalizer.apply(&seen, input);
             }
-            for (r, state) in states.chunks_exact(state_dim).enumerate() {
-                for (s, &x) in state.iter().enumerate() {
+            for r in 0..rows {
+                for (s, &x) in state(r).iter().enumerate() {
                     columns[s * BLOCK + r] = x;
                 }
             }
             actor.act(&inputs[..rows * seen], &columns, rows, None);
-            for (r, state) in states.chunks_exact(state_dim).enumerate() {
+            for r in 0..rows {
                 let limited = actor.action(r).iter().zip(&self.env.command).map(|(c, port)| c.clamp(port.lo, port.hi));
                 let at = commands.len();
                 commands.extend(limited);
                 let read: Vec<f64> = self.reads.iter().map(|&c| commands[at + c]).collect();
-                self.world.law.effort(&self.design, &read, state, &mut effort);
+                self.world.law.effort(&self.design, &read, state(r), &mut effort);
                 efforts.extend_from_slice(&effort);
             }
         }

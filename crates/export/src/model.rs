@@ -52,7 +52,9 @@ impl Models {
     pub(super) fn new(env: &EnvSpec) -> Self {
         let seen = |element| tensor(OBSERVATION, element, &listed(&env.observation));
         let said = |element| tensor(COMMAND, element, &env.command.iter().map(command).collect::<Vec<_>>());
-        let plain = |name, ports| tensor(name, ElementType::Float64, &listed(ports));
+        // A law may read no state, and a world may have no law.
+        let plain =
+            |name, ports: &[Port]| (!ports.is_empty()).then(|| tensor(name, ElementType::Float64, &listed(ports)));
         Self {
             controller: Model {
                 about: "the deterministic controller",
@@ -63,8 +65,8 @@ impl Models {
             policy: Model {
                 about: "the deterministic controller and the law of the hardware as built",
                 arithmetic: "the network in float32, all before and after it in float64, as in the simulation",
-                inputs: vec![seen(ElementType::Float64), plain(STATE, &env.state)],
-                outputs: vec![said(ElementType::Float64), plain(EFFORT, &env.effort)],
+                inputs: [seen(ElementType::Float64)].into_iter().chain(plain(STATE, &env.state)).collect(),
+                outputs: [said(ElementType::Float64)].into_iter().chain(plain(EFFORT, &env.effort)).collect(),
             },
         }
     }

@@ -106,7 +106,7 @@ impl Checker<'_> {
                 let squares: Vec<Part> =
                     first.parts.iter().map(|&part| self.formulas.binary(Binary::Mul, part, part)).collect();
                 let sum = self.fold(Binary::Add, &squares);
-                Ok(scalar(self.formulas.unary(Unary::Sqrt, sum), first.quantity))
+                Ok(scalar(self.root(sum), first.quantity))
             }
             "dot" => {
                 let products = self.both(Binary::Mul, first, &arguments[1], span)?;
@@ -160,30 +160,48 @@ impl Checker<'_> {
         let [zero, two, pi] = [0.0, 2.0, std::f64::consts::PI].map(|value| self.formulas.constant(value));
         let (xx, yy) = (self.formulas.binary(Binary::Mul, x, x), self.formulas.binary(Binary::Mul, y, y));
         let sum = self.formulas.binary(Binary::Add, xx, yy);
-        let r = self.formulas.unary(Unary::Sqrt, sum);
+        let r = self.root(sum);
         // For x > 0: y/(r + x). Else (r - x)/y, which does not cancel.
         let (right, left) = (self.formulas.binary(Binary::Less, zero, x), {
             let right = self.formulas.binary(Binary::Less, zero, x);
             self.formulas.not(right)
         });
         let (beyond, before) = (self.formulas.binary(Binary::Add, r, x), self.formulas.binary(Binary::Sub, r, x));
-        let (near, far) = (self.formulas.binary(Binary::Div, y, beyond), self.formulas.binary(Binary::Div, before, y));
         let half = |this: &mut Self, open: Part, ratio: Part| {
             let angle = this.formulas.unary(Unary::Atan, ratio);
             let angle = this.formulas.binary(Binary::Mul, two, angle);
             this.formulas.binary(Binary::Gate, open, angle)
         };
-        // On the axis y = 0 the ratio of the left side is no number.
+        // On the axis y = 0 the ratio of the left side would be no number.
         let (up, down) = (self.formulas.binary(Binary::Less, zero, y), self.formulas.binary(Binary::Less, y, zero));
         let off_axis = self.formulas.binary(Binary::Max, up, down);
         let on_axis = self.formulas.not(off_axis);
         let left_off = self.formulas.binary(Binary::Mul, left, off_axis);
         let negative = self.formulas.binary(Binary::Less, x, zero);
         let left_on = self.formulas.binary(Binary::Mul, negative, on_axis);
+        let (beyond, aside) = (self.safe(right, beyond), self.safe(left_off, y));
+        let (near, far) =
+            (self.formulas.binary(Binary::Div, y, beyond), self.formulas.binary(Binary::Div, before, aside));
         let (a, b) = (half(self, right, near), half(self, left_off, far));
         let c = self.formulas.binary(Binary::Gate, left_on, pi);
         let ab = self.formulas.binary(Binary::Add, a, b);
         self.formulas.binary(Binary::Add, ab, c)
+    }
+
+    /// The value where a gate is open, 1 where it is shut: what is divided by it has a derivative even where nobody reads it.
+    fn safe(&mut self, open: Part, value: Part) -> Part {
+        let shut = self.formulas.not(open);
+        let value = self.formulas.binary(Binary::Gate, open, value);
+        self.formulas.binary(Binary::Add, value, shut)
+    }
+
+    /// The square root of a number that is not negative, with the derivative 0 at 0.
+    fn root(&mut self, value: Part) -> Part {
+        let zero = self.formulas.constant(0.0);
+        let above = self.formulas.binary(Binary::Less, zero, value);
+        let (safe, at_zero) = (self.safe(above, value), self.formulas.not(above));
+        let root = self.formulas.unary(Unary::Sqrt, safe);
+        self.formulas.binary(Binary::Sub, root, at_zero)
     }
 
     /// Of one vector its least or greatest component, of several values componentwise.

@@ -227,6 +227,28 @@ fn every_function_differentiates() {
     }
 }
 
+/// Robots start at rest in the middle: an angle of exactly 0 has a derivative, and so has what stands in the branch not taken.
+#[test]
+fn angles_at_zero_differentiate() {
+    let mut inputs = INPUTS;
+    inputs[0] = 0.0;
+    for text in ["wrap(stiffness * knee)", "atan2(stiffness * knee, stiffness)", "atan2(stiffness * knee, 1) * speed"] {
+        let report = gradcheck(&program(text), &[STIFFNESS], &inputs, &GradCheckSettings::default());
+        let report = report.unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert!(report.max_relative_error < 1e-7, "{text}: {report:?}");
+    }
+    for text in ["norm([stiffness * knee, 0])", "atan2(stiffness * knee, 0)", "atan2(stiffness * knee, -1)"] {
+        let program = program(text);
+        let (mut tape, mut out) = (program.tape::<f64>(1), [0.0]);
+        program.bind(&[STIFFNESS], &mut tape);
+        program.forward(&inputs, 1, 1, &mut tape, &mut out, 1);
+        let (mut gradient, mut of_columns) = ([0.0], [0.0; INPUTS.len()]);
+        program.vjp(&inputs, 1, 1, &[1.0], 1, &mut tape, &mut of_columns, 1);
+        program.vjp_uniform(&mut tape, &mut gradient);
+        assert_eq!(gradient, [0.0], "{text}");
+    }
+}
+
 /// What is wrong, where, and what is said of it.
 #[test]
 fn faults_name_place_and_way_out() {

@@ -121,6 +121,8 @@ impl Body {
         let found = self.ids.keyframes.iter().find(|(known, _)| known.as_deref() == Some(name));
         let (_, id) = found.ok_or_else(|| format!("the model has lost its keyframe {name}"))?;
         self.sim.set_keyframe(*id);
+        // A keyframe's controls are its author's. Here nothing has been commanded yet, and who is not commanded rests.
+        self.sim.ctrl_mut().fill(0.0);
         Ok(())
     }
 

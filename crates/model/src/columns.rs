@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use hwasp_expr::Distribution;
+use hwasp_core::Dimension;
+use hwasp_expr::{Distribution, Quantity};
 
 /// A number that the engine knows, by indices of the compiled model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -92,6 +93,8 @@ pub(crate) struct Columns {
     all: Vec<Column>,
     at: HashMap<Column, usize>,
     names: Vec<String>,
+    /// What each measures, where it is known.
+    dimensions: Vec<Dimension>,
     /// How each draw is drawn, by stage and number.
     draws: HashMap<Stage, Vec<Distribution>>,
 }
@@ -107,6 +110,19 @@ impl Columns {
         self.at.insert(column, at);
         self.names.push(name());
         at
+    }
+
+    /// Notes what a column measures, where that is known.
+    pub(crate) fn measures(&mut self, at: usize, quantity: Quantity) {
+        self.dimensions.resize(self.all.len(), Dimension::None);
+        if let Some(dimension) = quantity.dimension() {
+            self.dimensions[at] = dimension;
+        }
+    }
+
+    /// What a column measures, as far as it is known.
+    pub(crate) fn dimension(&self, at: usize) -> Dimension {
+        self.dimensions.get(at).copied().unwrap_or(Dimension::None)
     }
 
     /// A place for a new random number.

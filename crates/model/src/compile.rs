@@ -132,7 +132,9 @@ impl Compiler<'_, '_> {
         outputs.extend(&memory);
         let place = |column: Column| self.names.columns.all().iter().position(|&known| known == column);
         let memory_columns: Vec<usize> = (0..memory.len()).filter_map(|i| place(Column::Memory(i))).collect();
-        let random = random.map(|parts| {
+        // Fields and delays draw too, with no quantity of the episode.
+        let drawn = !self.names.columns.draws_of(Stage::Random).is_empty();
+        let random = random.or_else(|| drawn.then(Vec::new)).map(|parts| {
             let columns = (0..parts.len()).filter_map(|i| place(Column::Random(i))).collect();
             (formula(self, Some(Stage::Random), numbered(&parts)), columns)
         });

@@ -1,6 +1,7 @@
 //! Designs at the corners of their limits, compiled before anything is trained.
 
 use hwasp_core::Stream;
+use hwasp_expr::Distribution;
 use rand::{RngExt, SeedableRng};
 
 use crate::columns::Column;
@@ -10,8 +11,10 @@ use crate::robot::Robot;
 const MOST: usize = 6;
 /// Designs inside of the limits that are tried, too.
 const INSIDE: usize = 8;
-/// Numbers for what is drawn: the least, the middle, the most.
-const DRAWS: [f64; 3] = [0.0, 0.5, 1.0 - f64::EPSILON];
+/// What is drawn: few, the middle, much.
+const LUCK: [f64; 3] = [-1.0, 0.0, 1.0];
+/// Standard deviations from the middle that much of a normal draw is: it has no most.
+const WIDE: f64 = 3.0;
 
 /// Compiles the model for designs at the corners and inside of the limits.
 ///
@@ -41,7 +44,7 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
                 low
             };
         }
-        let columns = columns(robot, &design, DRAWS[number % DRAWS.len()]);
+        let columns = columns(robot, &design, LUCK[number % LUCK.len()]);
         shaping.formula.program.bind(&design, &mut tape);
         shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
         let at = || {
@@ -63,17 +66,19 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
     Ok(())
 }
 
-/// The columns that a model is made from, with `draw` for everything that is drawn.
-pub(crate) fn columns(robot: &Robot, design: &[f64], draw: f64) -> Vec<f64> {
-    let mut values: Vec<f64> = robot
-        .columns
-        .iter()
-        .map(|column| match column {
-            Column::Draw(..) => draw,
-            Column::Progress => 1.0,
-            _ => 0.0,
-        })
-        .collect();
+/// The columns that a model is made from, with everything drawn in its middle for a `luck` of 0, and at its ends for -1 and 1.
+pub(crate) fn columns(robot: &Robot, design: &[f64], luck: f64) -> Vec<f64> {
+    let mut values = vec![0.0; robot.columns.len()];
+    let random = robot.random.iter().flat_map(|(formula, _)| &formula.draws);
+    for &(from, column) in random.chain(robot.shaping.iter().flat_map(|shaping| &shaping.formula.draws)) {
+        values[column] = match from {
+            Distribution::Uniform => (0.5 + 0.5 * luck).min(1.0 - f64::EPSILON),
+            Distribution::Normal => WIDE * luck,
+        };
+    }
+    if let Some(at) = robot.columns.iter().position(|column| *column == Column::Progress) {
+        values[at] = 1.0;
+    }
     if let Some((formula, columns)) = &robot.random {
         let mut tape = formula.program.tape::<f64>(1);
         let mut out = vec![0.0; columns.len()];

@@ -1,10 +1,10 @@
 //! Episodes of a robot.
 
-use std::collections::VecDeque;
+mod advance;
+
 use std::sync::Arc;
 
 use hwasp_core::{End, EnvSpec, Environment, MakeEnvironment, Outcome, Step, Stream};
-use hwasp_diff::ProgramTape;
 use hwasp_expr::Distribution;
 use hwasp_mujoco::engine::Spec;
 use rand::{RngExt, SeedableRng};
@@ -12,10 +12,9 @@ use rand_distr::StandardNormal;
 
 use crate::body::Body;
 use crate::columns::Column;
-use crate::robot::{Formula, Robot, Target};
-
-/// How often what is remembered is computed at the start: formulas of what was before may be nested so deep.
-const MEMORY_PASSES: usize = 4;
+use crate::delay::Delay;
+use crate::ready::Ready;
+use crate::robot::{Formula, Robot};
 
 /// Makes environments of a robot.
 #[derive(Clone, Debug)]
@@ -28,27 +27,6 @@ pub(crate) struct ModelEnvironments {
 impl MakeEnvironment for ModelEnvironments {
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment> {
         Box::new(ModelEnvironment::new(&self.robot, horizon, self.own_law))
-    }
-}
-
-/// A program that is ready to run, and where its numbers go.
-#[derive(Debug)]
-struct Ready {
-    tape: ProgramTape<f64>,
-    out: Vec<f64>,
-}
-
-impl Ready {
-    fn new(formula: &Formula) -> Self {
-        Self { tape: formula.program.tape(1), out: vec![0.0; formula.program.output_names().len()] }
-    }
-
-    fn bind(&mut self, formula: &Formula, design: &[f64]) {
-        formula.program.bind(design, &mut self.tape);
-    }
-
-    fn run(&mut self, formula: &Formula, values: &[f64]) {
-        formula.program.forward(values, 1, 1, &mut self.tape, &mut self.out, 1);
     }
 }
 
@@ -85,35 +63,6 @@ pub(crate) struct ModelEnvironment {
     success: bool,
     terms: Vec<f64>,
     fault: Option<String>,
-}
-
-/// Values of the last steps, the newest last.
-#[derive(Debug, Default)]
-struct Delay {
-    steps: usize,
-    kept: VecDeque<Vec<f64>>,
-}
-
-impl Delay {
-    fn begin(&mut self, steps: usize) {
-        self.steps = steps;
-        self.kept.clear();
-    }
-
-    /// Takes a value and gives the one of some steps before; the oldest that there is at the start.
-    fn pass(&mut self, value: &mut [f64]) {
-        if self.steps == 0 {
-            return;
-        }
-        let mut newest =
-            if self.kept.len() > self.steps { self.kept.pop_front().unwrap_or_default() } else { Vec::new() };
-        newest.clear();
-        newest.extend_from_slice(value);
-        self.kept.push_back(newest);
-        if let Some(oldest) = self.kept.front() {
-            value.copy_from_slice(oldest);
-        }
-    }
 }
 
 impl ModelEnvironment {
@@ -256,6 +205,12 @@ impl ModelEnvironment {
         self.effort.fill(0.0);
         self.command.fill(0.0);
         self.terms.fill(0.0);
+        // Nothing of the episode before: what comes may follow on any other.
+        for (value, column) in self.values.iter_mut().zip(&self.robot.columns) {
+            if matches!(column, Column::Memory(_) | Column::Draw(..)) {
+                *value = 0.0;
+            }
+        }
         self.fill_own();
         self.draw_episode();
         self.shape()?;
@@ -265,17 +220,23 @@ impl ModelEnvironment {
         if let (Some(formula), Some(ready)) = (&robot.delays, &mut self.delays) {
             ready.run(formula, &self.values);
             for (steps, &time) in delays.iter_mut().zip(&ready.out) {
-                *steps = (time.max(0.0) / self.spec.time_step).round().min(1000.0) as usize;
+                *steps = Delay::steps(time, self.spec.time_step)?;
             }
         }
         self.seen.begin(delays[0]);
         self.told.begin(delays[1]);
         self.body.read(&mut self.values);
-        for _ in 0..MEMORY_PASSES.min(robot.outputs.memory * MEMORY_PASSES) {
-            self.step.run(&robot.step, &self.values);
-            self.remember();
+        // Before the first step all was as at the start: each pass settles one more of what was before that.
+        if robot.outputs.memory > 0 {
+            self.draw(&robot.step.draws);
         }
-        self.evaluate();
+        for _ in 0..robot.outputs.memory {
+            self.step.run(&robot.step, &self.values);
+            if !self.remember() {
+                break;
+            }
+        }
+        self.evaluate()?;
         let kinds = robot.outputs.kinds_at();
         self.kind = self.step.out[kinds].iter().position(|&holds| holds != 0.0).unwrap_or(robot.outputs.kinds);
         self.remember();
@@ -283,69 +244,34 @@ impl ModelEnvironment {
     }
 
     /// Observation, reward and ends of the state at hand.
-    fn evaluate(&mut self) {
+    fn evaluate(&mut self) -> Result<(), String> {
         let robot = Arc::clone(&self.robot);
         self.draw(&robot.step.draws);
         self.step.run(&robot.step, &self.values);
+        let told = &self.step.out[..self.step.out.len() - robot.outputs.memory];
+        // Observations are read in single precision.
+        let sound = |(i, value): (usize, &f64)| {
+            if i < robot.outputs.observations { (*value as f32).is_finite() } else { value.is_finite() }
+        };
+        if let Some((i, value)) = told.iter().enumerate().find(|&at| !sound(at)) {
+            return Err(format!("{} is {value} after {} steps", robot.output_name(i), self.taken));
+        }
         self.seen.pass(&mut self.step.out[..robot.outputs.observations]);
         for (state, &at) in self.state.iter_mut().zip(&robot.states) {
             *state = self.values[at];
         }
+        Ok(())
     }
 
-    /// Keeps what the next step calls the step before.
-    fn remember(&mut self) {
+    /// Keeps what the next step calls the step before. Whether that is something new.
+    fn remember(&mut self) -> bool {
         let from = self.step.out.len() - self.robot.outputs.memory;
+        let mut new = false;
         for (&column, &value) in self.robot.memory.iter().zip(&self.step.out[from..]) {
+            new |= self.values[column].to_bits() != value.to_bits();
             self.values[column] = value;
         }
-    }
-
-    /// Applies forces, controls and efforts, and lets time pass.
-    fn advance(&mut self) -> Result<(), String> {
-        let robot = Arc::clone(&self.robot);
-        if let (Some((formula, bodies)), true) = (&robot.forces, self.forces.is_some()) {
-            self.draw(&formula.draws);
-            if let Some(ready) = &mut self.forces {
-                ready.run(formula, &self.values);
-                self.body.push(bodies, &ready.out);
-            }
-        }
-        for (command, actuator) in self.command.iter().zip(&robot.direct) {
-            if let Some(actuator) = actuator {
-                self.body.control(*actuator, *command);
-            }
-        }
-        if self.own_law {
-            return self.advance_with_law(&robot);
-        }
-        let tendons = robot.targets.iter().any(|target| matches!(target, Target::Tendon(_)));
-        if !tendons {
-            self.body.apply(&robot.targets, &self.effort);
-            return self.body.step(robot.frame_skip);
-        }
-        // A tension is held, and the arms at which it pulls change on the way.
-        for _ in 0..robot.frame_skip {
-            self.body.apply(&robot.targets, &self.effort);
-            self.body.step(1)?;
-        }
-        Ok(())
-    }
-
-    /// The law at the rate of the physics: what holding it for a step hides is seen so.
-    fn advance_with_law(&mut self, robot: &Robot) -> Result<(), String> {
-        let derived = robot.states.iter().any(|&at| matches!(robot.columns[at], Column::Engine(r) if r.is_derived()));
-        for _ in 0..robot.frame_skip {
-            self.body.refresh(derived)?;
-            self.body.read(&mut self.values);
-            for (state, &at) in self.state.iter_mut().zip(&robot.states) {
-                *state = self.values[at];
-            }
-            robot.law.effort(&self.design, &self.command, &self.state, &mut self.effort);
-            self.body.apply(&robot.targets, &self.effort);
-            self.body.step(1)?;
-        }
-        Ok(())
+        new
     }
 }
 
@@ -395,7 +321,10 @@ impl Environment for ModelEnvironment {
         }
         self.body.read(&mut self.values);
         self.fill_own();
-        self.evaluate();
+        if let Err(error) = self.evaluate() {
+            self.fault = Some(error);
+            return faulted;
+        }
         self.remember();
         let outputs = self.robot.outputs;
         let terms = &self.step.out[outputs.terms_at()];
@@ -423,19 +352,5 @@ impl Environment for ModelEnvironment {
 
     fn fault(&self) -> Option<String> {
         self.fault.clone()
-    }
-}
-
-impl ModelEnvironment {
-    /// Effort and command as the motors get them.
-    fn delay_told(&mut self) {
-        if self.told.steps == 0 {
-            return;
-        }
-        let efforts = self.effort.len();
-        let mut both: Vec<f64> = self.effort.iter().chain(&self.command).copied().collect();
-        self.told.pass(&mut both);
-        self.effort.copy_from_slice(&both[..efforts]);
-        self.command.copy_from_slice(&both[efforts..]);
     }
 }

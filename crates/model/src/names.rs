@@ -1,8 +1,12 @@
 //! What names in formulas stand for.
 
-use hwasp_core::Dimension;
-use hwasp_expr::{Distribution, Exponents, Formulas, NameError, Part, Path, Quantity, Scope, Symbol, Value};
+mod attributes;
 
+use hwasp_core::Dimension;
+use hwasp_expr::{Distribution, Formulas, NameError, Part, Path, Quantity, Scope, Symbol, Value};
+
+pub(crate) use self::attributes::attributes;
+use self::attributes::{ENERGY, LENGTH, SPEED, three};
 use crate::anatomy::Anatomy;
 use crate::columns::{Column, Columns, Reading, Stage};
 
@@ -104,7 +108,11 @@ impl Scope for InPlace<'_> {
         let parts = match columns {
             Found::Columns(columns) => columns
                 .into_iter()
-                .map(|(column, name)| formulas.column(names.columns.place(column, || name)))
+                .map(|(column, name, quantity)| {
+                    let at = names.columns.place(column, || name);
+                    names.columns.measures(at, quantity);
+                    formulas.column(at)
+                })
                 .collect(),
             Found::Number(value) => vec![formulas.constant(value)],
         };
@@ -143,112 +151,8 @@ impl Scope for InPlace<'_> {
 }
 
 enum Found {
-    Columns(Vec<(Column, String)>),
+    Columns(Vec<(Column, String, Quantity)>),
     Number(f64),
-}
-
-/// What the attribute of an element reads.
-type Attribute = fn(&Anatomy, usize) -> (Vec<Reading>, Quantity);
-
-const LENGTH: Quantity = Quantity::Known(Exponents::new([0, 1, 0, 0, 0]));
-const SPEED: Quantity = Quantity::Known(Exponents::new([0, 1, -1, 0, 0]));
-const TURNING: Quantity = Quantity::Known(Exponents::new([0, 0, -1, 0, 1]));
-
-fn three(reading: impl Fn(usize) -> Reading) -> Vec<Reading> {
-    (0..3).map(reading).collect()
-}
-
-fn four(reading: impl Fn(usize) -> Reading) -> Vec<Reading> {
-    (0..4).map(reading).collect()
-}
-
-/// The attributes of a kind of element, with what each means.
-pub(crate) fn attributes(kind: &str) -> &'static [(&'static str, Attribute, &'static str)] {
-    match kind {
-        "joint" => &[
-            (
-                "pos",
-                |a, i| (a.joints[i].qpos.clone().map(Reading::Position).collect(), a.joints[i].position()),
-                "position: rad or m; a quaternion of a ball; place and quaternion of a free joint",
-            ),
-            (
-                "vel",
-                |a, i| (a.joints[i].dof.clone().map(Reading::Velocity).collect(), a.joints[i].velocity()),
-                "velocity: rad/s or m/s",
-            ),
-            (
-                "acc",
-                |a, i| (a.joints[i].dof.clone().map(Reading::Acceleration).collect(), Quantity::Unknown),
-                "acceleration in the last simulation step",
-            ),
-            (
-                "force",
-                |a, i| {
-                    (
-                        a.joints[i].dof.clone().map(Reading::ActuatorForceOn).collect(),
-                        Quantity::of(a.joints[i].effort()),
-                    )
-                },
-                "force of the actuators on it",
-            ),
-            (
-                "constraint",
-                |a, i| {
-                    let forces = a.joints[i].dof.clone().map(Reading::ConstraintForceOn).collect();
-                    (forces, Quantity::of(a.joints[i].effort()))
-                },
-                "force of contacts and limits on it",
-            ),
-        ],
-        "body" => &[
-            ("pos", |_, i| (three(|k| Reading::BodyPosition(i, k)), LENGTH), "place of its frame in the world, m"),
-            (
-                "quat",
-                |_, i| (four(|k| Reading::BodyOrientation(i, k)), Quantity::Number),
-                "orientation, a quaternion (w, x, y, z)",
-            ),
-            (
-                "vel",
-                |_, i| (three(|k| Reading::BodyVelocity(i, k)), SPEED),
-                "velocity of its frame's origin in the world, m/s",
-            ),
-            (
-                "angvel",
-                |_, i| (three(|k| Reading::BodyAngularVelocity(i, k)), TURNING),
-                "angular velocity in the world, rad/s",
-            ),
-            ("com", |_, i| (three(|k| Reading::BodyCentre(i, k)), LENGTH), "place of its centre of mass, m"),
-            (
-                "force",
-                |_, i| ((0..6).map(|k| Reading::BodyForce(i, k)).collect(), Quantity::Unknown),
-                "torque and force on it from outside (`cfrc_ext`), N·m and N",
-            ),
-        ],
-        "geom" => &[
-            ("pos", |_, i| (three(|k| Reading::GeomPosition(i, k)), LENGTH), "place of its centre in the world, m"),
-            ("quat", |_, i| (four(|k| Reading::GeomOrientation(i, k)), Quantity::Number), "orientation, a quaternion"),
-        ],
-        "site" => &[
-            ("pos", |_, i| (three(|k| Reading::SitePosition(i, k)), LENGTH), "place in the world, m"),
-            ("quat", |_, i| (four(|k| Reading::SiteOrientation(i, k)), Quantity::Number), "orientation, a quaternion"),
-        ],
-        "tendon" => &[
-            ("length", |_, i| (vec![Reading::TendonLength(i)], LENGTH), "length, m"),
-            ("vel", |_, i| (vec![Reading::TendonVelocity(i)], SPEED), "rate of the length, m/s"),
-        ],
-        "actuator" => &[
-            ("force", |_, i| (vec![Reading::ActuatorForce(i)], Quantity::Unknown), "force or torque of it"),
-            ("length", |_, i| (vec![Reading::ActuatorLength(i)], Quantity::Unknown), "length of its transmission"),
-            ("vel", |_, i| (vec![Reading::ActuatorVelocity(i)], Quantity::Unknown), "rate of that length"),
-            ("control", |_, i| (vec![Reading::Control(i)], Quantity::Unknown), "what it is told"),
-            (
-                "act",
-                |a, i| (a.actuators[i].activation.into_iter().map(Reading::Activation).collect(), Quantity::Unknown),
-                "its activation, where it has one",
-            ),
-        ],
-        _ => &[],
-    }
 }
 
 impl Names {
@@ -272,30 +176,26 @@ impl Names {
     fn find(&self, path: &Path) -> Result<(Found, Quantity, usize), NameError> {
         let kind = path.first();
         match kind {
-            "time" => Ok((column(Column::Time, "time"), Quantity::of(Dimension::Time), 1)),
-            "step" => Ok((column(Column::Count, "step"), Quantity::Number, 1)),
-            "progress" => Ok((column(Column::Progress, "progress"), Quantity::Number, 1)),
+            "time" => Ok(column(Column::Time, kind, Quantity::of(Dimension::Time))),
+            "step" => Ok(column(Column::Count, kind, Quantity::Number)),
+            "progress" => Ok(column(Column::Progress, kind, Quantity::Number)),
             "dt" => Ok((Found::Number(self.time_step), Quantity::of(Dimension::Time), 1)),
             "qpos" => {
                 let all = self.anatomy.joints.iter().flat_map(|joint| joint.qpos.clone()).map(Reading::Position);
-                Ok((engine(all.collect(), "qpos"), Quantity::Unknown, 1))
+                Ok(engine(all.collect(), kind, Quantity::Unknown, 1))
             }
             "qvel" => {
                 let all = self.anatomy.joints.iter().flat_map(|joint| joint.dof.clone()).map(Reading::Velocity);
-                Ok((engine(all.collect(), "qvel"), Quantity::Unknown, 1))
+                Ok(engine(all.collect(), kind, Quantity::Unknown, 1))
             }
             "com" => match path.word(1) {
-                Some("pos") => Ok((engine(three(Reading::Centre), "com.pos"), LENGTH, 2)),
-                Some("vel") => Ok((engine(three(Reading::CentreVelocity), "com.vel"), SPEED, 2)),
+                Some("pos") => Ok(engine(three(Reading::Centre), "com.pos", LENGTH, 2)),
+                Some("vel") => Ok(engine(three(Reading::CentreVelocity), "com.vel", SPEED, 2)),
                 _ => Err(attribute_missing(path, 1, &["pos", "vel"])),
             },
             "energy" => match path.word(1) {
-                Some("kinetic") => {
-                    Ok((engine(vec![Reading::Kinetic], "energy.kinetic"), Quantity::of(Dimension::Torque), 2))
-                }
-                Some("potential") => {
-                    Ok((engine(vec![Reading::Potential], "energy.potential"), Quantity::of(Dimension::Torque), 2))
-                }
+                Some("kinetic") => Ok(engine(vec![Reading::Kinetic], "energy.kinetic", ENERGY, 2)),
+                Some("potential") => Ok(engine(vec![Reading::Potential], "energy.potential", ENERGY, 2)),
                 _ => Err(attribute_missing(path, 1, &["kinetic", "potential"])),
             },
             "command" | "effort" => self.port(path, kind),
@@ -327,7 +227,7 @@ impl Names {
                 Some(_) => Quantity::Unknown,
             });
             let name = if elements[index].is_empty() { format!("#{index}") } else { elements[index].clone() };
-            columns.extend(labelled(readings, &format!("{kind}.{name}.{attribute}")));
+            columns.extend(labelled(readings, &format!("{kind}.{name}.{attribute}"), of));
         }
         if columns.is_empty() {
             let message = format!("`{path}` is empty: none of them has one");
@@ -346,7 +246,7 @@ impl Names {
                 "see [task.law] and the model's actuators",
             ));
         }
-        let named = |i: usize| (column(i), format!("{kind}.{}", ports[i].0));
+        let named = |i: usize| (column(i), format!("{kind}.{}", ports[i].0), ports[i].1);
         if path.len() == 1 {
             let alike = ports.iter().all(|(_, quantity)| *quantity == ports[0].1);
             let quantity = if alike { ports[0].1 } else { Quantity::Unknown };
@@ -372,7 +272,8 @@ impl Names {
         let chosen = chosen(path, 1, &elements)?;
         let sensors = &self.anatomy.sensors;
         let columns = chosen.iter().flat_map(|&i| {
-            labelled(sensors[i].data.clone().map(Reading::Sensor).collect(), &format!("sensor.{}", sensors[i].name))
+            let readings = sensors[i].data.clone().map(Reading::Sensor).collect();
+            labelled(readings, &format!("sensor.{}", sensors[i].name), sensors[i].quantity)
         });
         let quantity = if chosen.len() == 1 { sensors[chosen[0]].quantity } else { Quantity::Unknown };
         Ok((Found::Columns(columns.collect()), quantity, 2))
@@ -389,31 +290,30 @@ impl Names {
         };
         let first = one(1)?;
         if path.len() == 2 {
-            return Ok((engine(vec![Reading::TouchAny(first)], &path.to_string()), Quantity::Number, 2));
+            return Ok(engine(vec![Reading::TouchAny(first)], &path.to_string(), Quantity::Number, 2));
         }
         let second = one(2)?;
         if path.word(3) == Some("force") {
             let reading = Reading::TouchForce(first, second);
-            return Ok((engine(vec![reading], &path.to_string()), Quantity::of(Dimension::Force), 4));
+            return Ok(engine(vec![reading], &path.to_string(), Quantity::of(Dimension::Force), 4));
         }
-        Ok((engine(vec![Reading::Touch(first, second)], &path.to_string()), Quantity::Number, 3))
+        Ok(engine(vec![Reading::Touch(first, second)], &path.to_string(), Quantity::Number, 3))
     }
 }
 
-fn column(column: Column, name: &str) -> Found {
-    Found::Columns(vec![(column, name.to_owned())])
+fn column(column: Column, name: &str, quantity: Quantity) -> (Found, Quantity, usize) {
+    (Found::Columns(vec![(column, name.to_owned(), quantity)]), quantity, 1)
 }
 
-fn engine(readings: Vec<Reading>, name: &str) -> Found {
-    Found::Columns(labelled(readings, name))
+fn engine(readings: Vec<Reading>, name: &str, quantity: Quantity, used: usize) -> (Found, Quantity, usize) {
+    (Found::Columns(labelled(readings, name, quantity)), quantity, used)
 }
 
-/// Columns with names, counted where there are several.
-fn labelled(readings: Vec<Reading>, name: &str) -> Vec<(Column, String)> {
+/// Columns with names, counted where there are several, and what they measure.
+fn labelled(readings: Vec<Reading>, name: &str, quantity: Quantity) -> Vec<(Column, String, Quantity)> {
     let several = readings.len() > 1;
-    let label =
-        |(i, reading)| (Column::Engine(reading), if several { format!("{name}[{i}]") } else { name.to_owned() });
-    readings.into_iter().enumerate().map(label).collect()
+    let label = |i| if several { format!("{name}[{i}]") } else { name.to_owned() };
+    readings.into_iter().enumerate().map(|(i, reading)| (Column::Engine(reading), label(i), quantity)).collect()
 }
 
 /// The elements that part `at` of a path means: one by its name or number, or all.

@@ -44,8 +44,35 @@ impl Problem for ModelProblem {
         built.stand_in = Some(Arc::new(move |_: &[f64]| Ok(fast.clone())));
         built.mechanism = Some(Arc::new(Model(Arc::clone(robot))));
         built.files = Arc::clone(&settings.files);
+        built.effort_std = effort_std(robot);
         Ok(built)
     }
+}
+
+/// The share of what commands can do to an effort that it is explored by, as commands are by a share of their range.
+const EXPLORED: f64 = 0.15;
+
+/// How far the commands move each effort of the law in the middle of the design, at rest, times [`EXPLORED`]; none where they do
+/// not move it.
+fn effort_std(robot: &Robot) -> Vec<Option<f64>> {
+    let (space, ports) = (robot.law.design(), &robot.env.command);
+    let design: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
+    let middle: Vec<f64> = ports.iter().map(|port| 0.5 * (port.lo + port.hi)).collect();
+    let state = vec![0.0; robot.states.len()];
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; robot.env.effort.len()];
+    let mut effort = vec![0.0; ranges.len()];
+    for (i, port) in ports.iter().enumerate() {
+        for end in [port.lo, port.hi] {
+            let mut command = middle.clone();
+            command[i] = end;
+            robot.law.effort(&design, &command, &state, &mut effort);
+            for (range, &effort) in ranges.iter_mut().zip(&effort) {
+                *range = [range[0].min(effort), range[1].max(effort)];
+            }
+        }
+    }
+    let spread = |[low, high]: [f64; 2]| Some(EXPLORED * (high - low)).filter(|std| (1e-6..=1e4).contains(std));
+    ranges.into_iter().map(spread).collect()
 }
 
 /// The model as what is built.
@@ -69,7 +96,7 @@ impl Mechanism for Model {
         let robot = &self.0;
         let mut making = robot.additions.spec(&robot.main, &robot.files)?;
         if let Some(shaping) = &robot.shaping {
-            let columns = crate::corners::columns(robot, design, 0.5);
+            let columns = crate::corners::columns(robot, design, 0.0);
             let mut tape = shaping.formula.program.tape::<f64>(1);
             let mut out = vec![0.0; shaping.fields.len()];
             shaping.formula.program.bind(design, &mut tape);

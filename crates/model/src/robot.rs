@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use hwasp_core::{EnvSpec, Law};
 use hwasp_diff::Program;
 use hwasp_expr::Distribution;
-use hwasp_mujoco::engine::{FieldPath, Files, Simulation, Spec, SpecError};
+use hwasp_mujoco::engine::{Element, FieldPath, Files, Simulation, Spec, SpecError};
 use hwasp_problem::AnyError;
 
 use crate::columns::{Column, Reading};
@@ -164,8 +164,10 @@ impl Robot {
         }
         let plain = || -> Result<Option<Simulation>, AnyError> {
             let mut spec = self.additions.spec(&self.main, &self.files)?;
-            let fields = self.shaping.iter().flat_map(|shaping| &shaping.fields);
-            if !spec.discard_visual()? || fields.into_iter().any(|field| spec.field(field).is_err()) {
+            let mut fields = self.shaping.iter().flat_map(|shaping| &shaping.fields);
+            // Geoms are counted without those that are left out: a number would mean another one.
+            let counted = fields.clone().any(|field| matches!(field.element(), Element::Index(_)));
+            if counted || !spec.discard_visual()? || fields.any(|field| spec.field(field).is_err()) {
                 return Ok(None);
             }
             Ok(Some(spec.compile()?))
@@ -173,6 +175,20 @@ impl Robot {
         // What fails here is told with the model as it is.
         if let Ok(Some(simulation)) = plain() {
             (self.plain, self.simulation) = (true, Mutex::new(simulation));
+        }
+    }
+
+    /// What an output of the step's program is, for messages.
+    pub(crate) fn output_name(&self, at: usize) -> String {
+        let outputs = self.outputs;
+        if let Some(port) = self.env.observation.get(at) {
+            return format!("the observation `{}`", port.name);
+        }
+        match self.terms.get(at - outputs.observations) {
+            Some(term) => format!("the reward `{term}`"),
+            None if outputs.ends_at() == Some(at) => "`ends`".to_owned(),
+            None if outputs.success_at() == Some(at) => "`success`".to_owned(),
+            None => format!("the kind `{}`", self.kinds[at - outputs.kinds_at().start]),
         }
     }
 

@@ -64,7 +64,7 @@ pub struct ModelSettings {
     pub ends: String,
     /// Whether an episode is a success, at its end.
     pub success: String,
-    /// Kinds of episodes, of which success is told apart: the first that holds at the start.
+    /// Kinds of episodes, of which success is told apart: the first by name that holds at the start.
     pub kinds: Named,
     /// Where an episode starts: fields of the state.
     pub start: Named,
@@ -233,7 +233,8 @@ impl ModelSettings {
         named_field(fields, "reward", &mut self.reward, "terms of the reward of a step; each has a curve");
         text_field(fields, "ends", &mut self.ends, "when an episode ends before its time, in failure");
         text_field(fields, "success", &mut self.success, "whether an episode is a success, at its end");
-        let about = "kinds of episodes of which success is told apart: the first that holds at the start";
+        let about =
+            "kinds of episodes of which success is told apart: the first by name that holds at the start, else `other`";
         named_field(fields, "kinds", &mut self.kinds, about);
         let about =
             "where an episode starts: `\"joint.*.pos\" = \"uniform(-0.1, 0.1)\"`, positions and velocities of joints";
@@ -241,7 +242,12 @@ impl ModelSettings {
         let about = "forces on bodies, 3 components in N, or 6 with the torque: `\"body.torso\" = \"[push, 0, 0]\"`";
         named_field(fields, "forces", &mut self.forces, about);
         text_field(fields, "observation_delay", &mut self.observation_delay, "time from what is to what is seen, s");
-        text_field(fields, "command_delay", &mut self.command_delay, "time from a command to what the motors do, s");
+        text_field(
+            fields,
+            "command_delay",
+            &mut self.command_delay,
+            "time from a decision to when it acts, s: of commands, and of the efforts that the law made of them",
+        );
     }
 
     fn law_fields(&mut self, fields: &mut Fields<'_, '_>) {

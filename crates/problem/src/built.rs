@@ -22,8 +22,9 @@ pub struct Built {
     pub deployment: World,
     /// The total of each design group that is best as built, where it is known, SI.
     pub optimum: Vec<Option<f64>>,
-    /// The standard deviation with which efforts are explored unless an experiment says otherwise, SI.
-    pub effort_std: Option<f64>,
+    /// The standard deviation with which each effort is explored unless an experiment says otherwise, SI; as its dimension says
+    /// where there is none.
+    pub effort_std: Vec<Option<f64>>,
     /// What problem and ports are called in exports and reports.
     pub words: Words,
     /// What is built of the law: parts, shapes, statics.
@@ -44,12 +45,13 @@ impl Built {
     /// The same with a world to train in and another in which the result has to work.
     pub fn of(training: World, deployment: World) -> Self {
         let optimum = vec![None; training.law.design().groups().len()];
+        let effort_std = vec![None; training.env.effort.len()];
         let words = Words::default();
         Self {
             training,
             deployment,
             optimum,
-            effort_std: None,
+            effort_std,
             words,
             mechanism: None,
             stand_in: None,

@@ -84,6 +84,9 @@ fn controller(graph: &mut Graph, deployed: &Deployed, outside: ElementType) {
 /// From command and state to effort, in double precision: the law of the hardware, with its design as initializers.
 fn hardware(graph: &mut Graph, deployed: &Deployed) {
     let program = deployed.world.law.program();
+    if program.output_names().is_empty() {
+        return;
+    }
     let mut uniforms = Vec::new();
     for (name, &value) in program.uniform_names().iter().zip(&deployed.design) {
         let name = format!("design.{name}");
@@ -105,6 +108,9 @@ fn hardware(graph: &mut Graph, deployed: &Deployed) {
 
 /// Takes a tensor apart into its columns.
 fn split(graph: &mut Graph, tensor: &str, columns: Vec<String>) -> Vec<Value> {
+    if columns.is_empty() {
+        return Vec::new();
+    }
     let lengths = format!("{tensor}.columns");
     graph.whole(&lengths, &vec![1; columns.len()]);
     graph.node_with("Split", &[tensor, &lengths], &columns, &[("axis", 1)]);
@@ -117,7 +123,7 @@ fn as_column(graph: &mut Graph, value: Value) -> String {
         return value.name;
     }
     let [rows, one, shape, column] = ["rows", "one", "shape", "column"].map(|part| format!("{}.{part}", value.name));
-    graph.node_with("Shape", &[STATE], std::slice::from_ref(&rows), &[("start", 0), ("end", 1)]);
+    graph.node_with("Shape", &[OBSERVATION], std::slice::from_ref(&rows), &[("start", 0), ("end", 1)]);
     graph.whole(&one, &[1]);
     graph.node_with("Concat", &[&rows, &one], std::slice::from_ref(&shape), &[("axis", 0)]);
     graph.node("Expand", &[&value.name, &shape], &column);

@@ -200,14 +200,18 @@ impl Compiler<'_, '_> {
     pub(super) fn env(&mut self, observed: &[(String, Value)], law: &Law) -> EnvSpec {
         let settings = self.settings;
         let named = |quantity: Quantity| quantity.dimension().unwrap_or(Dimension::None);
+        let columns = self.names.columns.clone();
+        let read = |at: usize| Port { name: columns.names()[at].clone(), dimension: columns.dimension(at) };
         let mut observation = Vec::new();
         for (text, value) in observed {
             for (i, &part) in value.parts.iter().enumerate() {
-                let label = self.formulas.as_column(part).map(|at| self.names.columns.names()[at].clone());
-                let several = value.parts.len() > 1;
-                let text = shorten(text, 60);
-                let name = label.unwrap_or_else(|| if several { format!("{text} [{i}]") } else { text });
-                observation.push(Port { name, dimension: named(value.quantity) });
+                observation.push(if let Some(at) = self.formulas.as_column(part) {
+                    read(at)
+                } else {
+                    let text = shorten(text, 60);
+                    let name = if value.parts.len() > 1 { format!("{text} [{i}]") } else { text };
+                    Port { name, dimension: named(value.quantity) }
+                });
             }
         }
         let commands = self.names.commands.clone();
@@ -225,7 +229,10 @@ impl Compiler<'_, '_> {
             });
             command.push(CommandPort { name: name.clone(), dimension: named(*quantity), lo, hi, direct: true });
         }
-        let state = law.ports().state.iter().map(|name| Port { name: name.clone(), dimension: Dimension::None });
+        let state = law.ports().state.iter().map(|name| {
+            let at = columns.names().iter().position(|column| column == name);
+            at.map_or_else(|| Port { name: name.clone(), dimension: Dimension::None }, read)
+        });
         let effort =
             self.names.efforts.iter().map(|(name, quantity)| Port { name: name.clone(), dimension: named(*quantity) });
         EnvSpec {

@@ -111,6 +111,16 @@ impl Compiler<'_, '_> {
                 self.sound = false;
                 continue;
             }
+            let refusal = if found.fields.contains(&field) {
+                Some("this field is set twice")
+            } else {
+                (field.to_string() == "option.timestep").then_some("the time step is that of the model's file")
+            };
+            if let Some(why) = refusal {
+                tell_at(self.section, &keys, &(0..at), why, None);
+                self.sound = false;
+                continue;
+            }
             let Some(value) = self.read(&keys, text, at + 1, Place::Model, 1) else { continue };
             let [part] = value.parts[..] else {
                 self.refuse(&keys, "a field takes one number", Some("set its components one by one".into()));

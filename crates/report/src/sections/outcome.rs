@@ -33,13 +33,13 @@ fn success(rates: &[SuccessRate]) -> Markup {
     let svg = intervals(&rows, "success (%)", 100.0);
     let about = "Dots are shares of successful episodes, bars their 95 % intervals; the table below has the numbers.";
     html! {
-        h3 { "Success by shape" }
+        h3 { "Success by kind of episode" }
         div.beside {
-            (gallery(&[picture(&svg, "success", "Success by shape of the object", about)], ""))
+            (gallery(&[picture(&svg, "success", "Success by kind of episode", about)], ""))
             table {
-                caption { "Grasps that held, with Wilson’s 95 % intervals" }
+                caption { "Successful episodes, with Wilson’s 95 % intervals" }
                 thead {
-                    tr { th scope="col" { "shape" } th.n scope="col" { "held" } th.n scope="col" { "share" }
+                    tr { th scope="col" { "kind" } th.n scope="col" { "successes" } th.n scope="col" { "share" }
                         th.n scope="col" { "interval" } }
                 }
                 tbody {

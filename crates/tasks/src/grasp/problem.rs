@@ -91,7 +91,7 @@ impl Problem for GraspProblem {
             Ok(world(problem, &native_law, &own, Scene::Native(design)))
         };
         Ok(Built {
-            effort_std: Some(0.02),
+            effort_std: vec![Some(0.02); training.env.effort.len()],
             words: words(self.palm, task.viewpoint),
             mechanism: Some(Arc::new(task.hand())),
             stand_in: Some(Arc::new(stand_in)),

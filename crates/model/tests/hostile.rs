@@ -1,0 +1,161 @@
+//! Formulas and models as nobody means them: what comes is the same every time, and what is no number is told by name.
+
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
+use std::sync::Arc;
+
+use hwasp_core::{End, Environment, Purpose, stream};
+use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers, resolve};
+use hwasp_problem::ModelFormat;
+use hwasp_testing::catalogue;
+
+/// A load on a slide, behind a plate that is only seen, in two shapes.
+const SLED: &str = r#"<mujoco>
+  <option timestep="0.01" gravity="0 0 0"/>
+  <worldbody>
+    <body name="sled">
+      <joint name="slide" type="slide" axis="1 0 0"/>
+      <geom name="plate" type="box" size="0.2 0.2 0.01" mass="0" contype="0" conaffinity="0"/>
+      <geom name="front" type="box" size="0.1 0.1 0.1" pos="0.5 0 0" mass="1"/>
+      <geom name="back" type="box" size="0.1 0.1 0.1" pos="-0.5 0 0" mass="2"/>
+    </body>
+  </worldbody>
+  <actuator><motor name="push" joint="slide" gear="10" ctrlrange="-1 1"/></actuator>
+  <keyframe><key name="driven" ctrl="1"/></keyframe>
+</mujoco>"#;
+
+fn resolved(text: &str) -> Result<Experiment, Faults> {
+    let files = Files::from([("sled.xml".to_owned(), Arc::from(SLED.as_bytes()))]);
+    let reward = if text.contains("[task.reward]") { "" } else { "\n[task.reward]\nnone = 0\n" };
+    let text = format!("name = \"sled\"\n[task]\nproblem = \"model\"\nmodel = \"sled.xml\"\n{text}{reward}");
+    let layers = Layers::from_text("sled.toml", &text).unwrap().with_folder(Folder::Sent(Arc::new(files)));
+    resolve(layers, Some("fixed"), catalogue())
+}
+
+fn robot(text: &str) -> Box<dyn Environment> {
+    let experiment = resolved(text).unwrap_or_else(|faults| panic!("{faults}"));
+    experiment.task.built().deployment.make.make(None)
+}
+
+fn seen(robot: &dyn Environment) -> Vec<f64> {
+    let mut seen = vec![0.0; robot.spec().observation.len()];
+    robot.observe(&mut seen);
+    seen
+}
+
+/// An environment that has lived shows what a new one does.
+#[test]
+fn an_episode_knows_nothing_of_the_one_before() {
+    let deep = (0..6).fold("time".to_owned(), |inner, _| format!("previous({inner})"));
+    let text =
+        format!("observe = [\"previous(joint.slide.pos + normal(0, 1))\", \"diff(normal(0, 1))\", \"{deep}\"]\n");
+    let episode = |robot: &mut dyn Environment, number| {
+        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, number));
+        let mut all = seen(robot);
+        for _ in 0..9 {
+            robot.step(&[], &[1.0]);
+            all.extend(seen(robot));
+        }
+        assert_eq!(robot.fault(), None);
+        all
+    };
+    let mut lived = robot(&text);
+    episode(&mut *lived, 0);
+    let found = episode(&mut *lived, 1);
+    assert_eq!(found, episode(&mut *robot(&text), 1));
+    // The innermost of six is the time of six steps ago.
+    let late: Vec<f64> = found.chunks_exact(3).map(|row| row[2]).collect();
+    assert_eq!(late[..7], [0.0; 7]);
+    assert!((late[9] - 0.03).abs() < 1e-12, "{late:?}");
+}
+
+#[test]
+fn what_is_no_number_is_told_by_name() {
+    for (text, wanted) in [
+        ("observe = [\"1 / (step - 2)\"]\n", "the observation `1 / (step - 2)` is inf after 2 steps"),
+        ("observe = [\"1e38 * 100 * step\"]\n", "the observation `1e38 * 100 * step` is"),
+        ("observe = [\"time\"]\nends = \"log(1 - step) > 0\"\n", ""),
+        ("observe = [\"time\"]\nends = \"log(1 - step)\"\n", "`ends` is -inf after 1 steps"),
+        ("observe = [\"time\"]\nsuccess = \"log(1 - step)\"\n", "`success` is -inf after 1 steps"),
+        ("observe = [\"time\"]\n[task.reward]\nodd = \"log(1 - step)\"\n", "the reward `odd` is -inf after 1 steps"),
+        ("observe = [\"time\"]\nobservation_delay = \"-1 s\"\n", "a delay is -1 s: it can be 0 to 10 s, 1000 steps"),
+        ("observe = [\"time\"]\ncommand_delay = \"11 s\"\n", "a delay is 11 s"),
+    ] {
+        let mut robot = robot(text);
+        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+        let ended = (0..3).find_map(|_| robot.step(&[], &[0.0]).end);
+        let fault = robot.fault().unwrap_or_default();
+        assert!(fault.starts_with(wanted), "{text}: {fault}");
+        assert_eq!(ended, (!wanted.is_empty()).then_some(End::Faulted), "{text}");
+    }
+}
+
+/// A number means the geom that the file counts so, whether what is only seen is left out or not.
+#[test]
+fn numbers_are_those_of_the_file() {
+    let pushed = |field: &str| {
+        let mut robot = robot(&format!("observe = [\"joint.slide.vel\"]\nset = [\"{field} = 9\"]\n"));
+        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+        robot.step(&[], &[1.0]);
+        seen(&*robot)[0]
+    };
+    // 10 N for 0.01 s.
+    for (field, mass) in
+        [("geom.front.mass", 11.0), ("geom.#1.mass", 11.0), ("geom.back.mass", 10.0), ("geom.#2.mass", 10.0)]
+    {
+        assert!((pushed(field) - 0.1 / mass).abs() < 1e-9, "{field}: {}", pushed(field));
+    }
+}
+
+/// Nobody commands the motor: the law drives the joint.
+#[test]
+fn a_motor_that_nobody_commands_rests() {
+    let law = "[task.law]\n\"joint.slide\" = \"0 N * command.push\"\n";
+    let mut robot = robot(&format!("keyframe = \"driven\"\nobserve = [\"actuator.push.force\"]\n{law}"));
+    robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+    for _ in 0..3 {
+        robot.step(&[0.0], &[1.0]);
+        assert_eq!(seen(&*robot), [0.0]);
+    }
+}
+
+#[test]
+fn fields_that_cannot_be_set_so() {
+    for (set, wanted) in [
+        ("\"geom.front.mass = 1\", \"geom.front.mass = 2\"", "this field is set twice"),
+        ("\"option.timestep = 0.001\"", "the time step is that of the model's file"),
+    ] {
+        let faults = resolved(&format!("observe = [\"time\"]\nset = [{set}]\n")).unwrap_err().to_string();
+        assert!(faults.contains(wanted), "{faults}");
+    }
+}
+
+/// A field that is drawn is another one in every episode, with no table of random quantities.
+#[test]
+fn a_field_is_drawn_for_each_episode() {
+    let mut robot = robot("observe = [\"joint.slide.vel\"]\nset = [\"geom.front.mass = uniform(2, 4)\"]\n");
+    let mut masses = (0..20).map(|number| {
+        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, number));
+        robot.step(&[], &[1.0]);
+        0.1 / seen(&*robot)[0] - 2.0
+    });
+    let (least, most) = masses
+        .try_fold((4.0_f64, 2.0_f64), |(least, most), mass| {
+            (2.0..4.0).contains(&mass).then_some((least.min(mass), most.max(mass)))
+        })
+        .unwrap();
+    assert!(least < 2.5 && most > 3.5, "from {least} to {most}");
+}
+
+/// What is drawn is written in its middle.
+#[test]
+fn a_drawn_field_is_written_in_its_middle() {
+    for draw in ["normal(3, 0.1)", "uniform(2, 4)"] {
+        let experiment = resolved(&format!("observe = [\"time\"]\nset = [\"geom.front.mass = {draw}\"]\n")).unwrap();
+        let mechanism = experiment.task.built().mechanism.clone().unwrap();
+        let files = mechanism.write(ModelFormat::Mjcf, &[]).unwrap();
+        let text = String::from_utf8(files[0].contents.clone()).unwrap();
+        let front = text.lines().find(|line| line.contains("\"front\"")).unwrap();
+        assert!(front.contains("mass=\"3\""), "{draw}: {front}");
+    }
+}

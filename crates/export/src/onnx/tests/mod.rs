@@ -223,7 +223,7 @@ fn a_law_without_a_state_and_no_law() {
     fs::write(folder.join("arm.xml"), arm).unwrap();
     let task = "name = 'arm'\n[task]\nproblem = 'model'\nmodel = 'arm.xml'\nhorizon = 10\nobserve = ['joint.shoulder.pos']\nreward = { still = '-joint.shoulder.vel^2' }";
     let gear = "[task.design]\ngear = { limits = [1, 3] }\n[task.law]\n'actuator.motor' = 'gear * command.motor'";
-    let weight = "[task.design.radius]\nlimits = ['0.04 m', '0.06 m']\nsets = ['geom.#0.size = radius']";
+    let weight = "[task.design.radius]\nlimits = ['0.04 m', '0.06 m']\nsets = ['geom.#0.size[0] = radius']";
     for (name, rest, methods) in [("geared", gear, ["hwasp", "minimal"]), ("bare", weight, ["episode", "fixed"])] {
         let path = folder.join(format!("{name}.toml"));
         fs::write(&path, format!("{task}\n{rest}\n")).unwrap();

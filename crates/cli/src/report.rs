@@ -168,6 +168,7 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
     let design = policy.space().names().len();
     let drawn = match policy.drawn_actions() {
         0 => String::new(),
+        drawn if drawn == design => ", drawn once an episode".to_owned(),
         drawn => format!(", {drawn} of them drawn once an episode"),
     };
     format!(

@@ -166,10 +166,16 @@ impl ActionDecoder {
     pub(crate) fn decode(&mut self, action: &[f64], unsampled: &[f64], state: &[f64]) {
         let (sampled, rest) = action.split_at(self.layout.sampled.len());
         let (efforts, commands) = rest.split_at(self.layout.efforts);
-        let sent = self.layout.commands.iter().zip(commands).chain(self.layout.unsampled.iter().zip(unsampled));
-        for (&c, &command) in sent {
-            let (lo, hi) = self.limits[c];
-            self.command[c] = command.clamp(lo, hi);
+        if unsampled.is_empty() {
+            for ((limited, &command), &(lo, hi)) in self.command.iter_mut().zip(commands).zip(&self.limits) {
+                *limited = command.clamp(lo, hi);
+            }
+        } else {
+            let sent = self.layout.commands.iter().zip(commands).chain(self.layout.unsampled.iter().zip(unsampled));
+            for (&c, &command) in sent {
+                let (lo, hi) = self.limits[c];
+                self.command[c] = command.clamp(lo, hi);
+            }
         }
         if self.layout.efforts > 0 {
             self.effort.copy_from_slice(efforts);
@@ -179,9 +185,15 @@ impl ActionDecoder {
             let (lo, hi) = self.law.design().bounds(i);
             self.design[i] = value.clamp(lo, hi);
         }
-        for (read, &c) in self.read.iter_mut().zip(&self.reads) {
-            *read = self.command[c];
-        }
-        self.law.effort(&self.design, &self.read, state, &mut self.effort);
+        // A law that reads as many as there are reads them all, in their order.
+        let read = if self.reads.len() == self.command.len() {
+            &self.command
+        } else {
+            for (read, &c) in self.read.iter_mut().zip(&self.reads) {
+                *read = self.command[c];
+            }
+            &self.read
+        };
+        self.law.effort(&self.design, read, state, &mut self.effort);
     }
 }

@@ -96,7 +96,7 @@ fn trajectories(problem: &MassSpring, policy: HardwarePolicy, seed: u64) -> Vec<
 }
 
 fn check(problem: &MassSpring) {
-    use Placement::{Action, Fixed, Graph};
+    use Placement::{Action, Episode, Fixed, Graph};
     let (law, env) = (problem.law(), problem.robot(None));
     let n = law.design().len();
     for (seed, squash) in [(0, true), (1, true), (2, false)] {
@@ -106,11 +106,12 @@ fn check(problem: &MassSpring) {
         let graph = trajectories(problem, all_graph, seed);
         for (name, place) in [
             ("in the action", &(|_| Action) as &dyn Fn(usize) -> Placement),
+            ("drawn once an episode", &|_| Episode),
             ("fixed", &|i| Fixed(design[i])),
             ("graph and action", &|i| if i % 2 == 0 { Graph } else { Action }),
             ("graph and fixed", &|i| if i < n / 2 { Graph } else { Fixed(design[i]) }),
             ("action and fixed", &|i| if i < n / 2 { Action } else { Fixed(design[i]) }),
-            ("all three", &|i| [Fixed(design[i]), Action, Graph][i % 3]),
+            ("all four", &|i| [Fixed(design[i]), Action, Graph, Episode][i % 4]),
         ] {
             let other = trajectories(problem, make((0..n).map(place).collect()), seed);
             if let Some(at) = graph.iter().zip(&other).position(|(a, b)| a != b) {

@@ -15,6 +15,8 @@ fn sound_experiments() {
     insta::assert_snapshot!(sandbox.transcript(&[
         "check mass-spring",
         "check mass-spring --method minimal",
+        "check mass-spring --set design.placements.stiffness[0..3]=episode",
+        "check reach --method episode",
         "check reach --method fixed --set train.env_steps=1e6",
         "check reach --set train.steps_per_iteration=2048 --set train.episodes_per_iteration=8",
         "check reach --set train.steps_per_iteration=1000",

@@ -28,6 +28,7 @@ fn another_machine_is_no_other_world() {
         ("task.motor_limit=6N", "the motors or their limits"),
         ("controller.hidden=[8]", "the controller's network"),
         ("controller.observation_scale=[0.2,0.5]", "how the controller sees what it observes"),
+        ("controller.sees_design=true", "whether the controller sees the design"),
         ("design.placement=fixed", "where the design's parameters sit, or the values of those that are fixed"),
         ("noise.train=false", "which parameters the policy has"),
     ] {

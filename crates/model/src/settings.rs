@@ -230,7 +230,7 @@ impl ModelSettings {
         named_field(fields, "define", &mut self.define, "names for formulas, to be used in others");
         named_field(fields, "random", &mut self.random, "quantities that are drawn when an episode starts");
         list_field(fields, "observe", &mut self.observe, "what the controller sees");
-        named_field(fields, "reward", &mut self.reward, "terms of the reward of a step; each has a curve");
+        named_field(fields, "reward", &mut self.reward, "terms of the reward of a step, by name");
         text_field(fields, "ends", &mut self.ends, "when an episode ends before its time, in failure");
         text_field(fields, "success", &mut self.success, "whether an episode is a success, at its end");
         let about =

@@ -64,7 +64,12 @@ impl Progress {
             design.push("…".to_owned());
         }
         // What matters most comes first: a narrow terminal shows no more than that.
-        let message = format!("return {:.1}  {}  {:.0}k steps/s", row.discounted_return, design.join("  "), rate / 1e3);
+        let worth = match row.discounted_return {
+            // Where steps are counted, an iteration may be over before any episode is.
+            none if none.is_nan() => "no return".to_owned(),
+            mean => format!("return {mean:.1}"),
+        };
+        let message = format!("{worth}  {}  {:.0}k steps/s", design.join("  "), rate / 1e3);
         if self.terminal {
             let left = self.env_steps.saturating_sub(row.env_steps) as f64 / rate;
             self.bar.set_position(row.env_steps.min(self.env_steps));

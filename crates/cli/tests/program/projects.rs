@@ -142,6 +142,12 @@ fn a_fresh_project_is_locked() {
     }
 }
 
+/// Copies the program by a process of its own: a test that starts another program meanwhile would pass a file that is open for
+/// writing on to it, and what is open for writing cannot be run.
+fn copy_program(to: &Path) {
+    assert!(Command::new("cp").arg(env!("CARGO_BIN_EXE_hwasp")).arg(to).status().unwrap().success());
+}
+
 /// An installed program wrote projects that were built from an address on the network at which hwasp never was.
 #[test]
 fn a_copy_of_the_program_elsewhere_asks_for_the_sources() {
@@ -150,7 +156,7 @@ fn a_copy_of_the_program_elsewhere_asks_for_the_sources() {
     let elsewhere = std::env::temp_dir().join(format!("hwasp-init-{}", std::process::id()));
     fs::create_dir_all(&elsewhere).unwrap();
     let program = elsewhere.join("hwasp");
-    fs::copy(env!("CARGO_BIN_EXE_hwasp"), &program).unwrap();
+    copy_program(&program);
     let run = |arguments: &[&str]| {
         Command::new(&program).args(arguments).current_dir(sandbox.path("")).env_clear().output().unwrap()
     };
@@ -175,7 +181,7 @@ fn a_copy_of_the_program_elsewhere_asks_for_the_sources() {
         std::os::unix::fs::symlink(Path::new(&root).join(name), checkout.join(name)).unwrap();
     }
     let program = checkout.join("target/hwasp");
-    fs::copy(env!("CARGO_BIN_EXE_hwasp"), &program).unwrap();
+    copy_program(&program);
     let output =
         Command::new(&program).args(["init", "lamp"]).current_dir(sandbox.path("")).env_clear().output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

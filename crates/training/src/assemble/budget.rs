@@ -82,7 +82,7 @@ impl Assembly {
     }
 
     /// What the method cannot divide: less than it is left of the budget. A search whose episodes end early leaves besides what
-    /// its last choice did not need of the [`final_steps`](Self::final_steps).
+    /// its last choice did not need of the `final_steps`.
     pub fn piece(&self) -> Piece {
         match self.generation() {
             Some((popsize, each)) => Piece { what: "generation", env_steps: popsize as u64 * each },

@@ -135,6 +135,11 @@ impl DesignSpace {
         self.bounds[i]
     }
 
+    /// The middle of the limits of every parameter, SI.
+    pub fn middle(&self) -> Vec<f64> {
+        self.bounds.iter().map(|(lo, hi)| 0.5 * (lo + hi)).collect()
+    }
+
     /// The name of every parameter: `stiffness[3]`, or just the group's where it has one member.
     pub fn names(&self) -> Vec<String> {
         self.groups

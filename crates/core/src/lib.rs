@@ -38,4 +38,4 @@ pub use policy::{
 pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, LaneSteps, RolloutError, Sampler, all_failed};
 pub use schedule::share_done;
 pub use streams::{Purpose, Stream, stream};
-pub use units::{Dimension, Unit, UnitError, parse_quantity, unit};
+pub use units::{Dimension, Unit, UnitError, parse_quantity, split_quantity, unit};

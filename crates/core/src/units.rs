@@ -171,8 +171,9 @@ impl Unit {
     }
 }
 
-/// Reads `"100 N/m"` or `"2.5 N·mm"` (also `N*mm`) and returns the SI value.
-pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+/// Takes `"-1_000 N/m"` apart into the text of the number, without `_`, and that of the unit, empty where there is none. Neither is
+/// checked.
+pub fn split_quantity(text: &str) -> (String, &str) {
     let trimmed = text.trim();
     let split = trimmed
         .char_indices()
@@ -183,7 +184,13 @@ pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, UnitError
             !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_') || exponent)
         })
         .map_or(trimmed.len(), |(i, _)| i);
-    let (number, symbol) = (trimmed[..split].replace('_', ""), trimmed[split..].trim().replace('*', "·"));
+    (trimmed[..split].replace('_', ""), trimmed[split..].trim())
+}
+
+/// Reads `"100 N/m"` or `"2.5 N·mm"` (also `N*mm`) and returns the SI value.
+pub fn parse_quantity(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+    let (number, symbol) = split_quantity(text);
+    let symbol = symbol.replace('*', "·");
     let text = text.to_owned();
     let Ok(value) = number.parse::<f64>() else { return Err(UnitError::Number { text }) };
     if symbol.is_empty() && dimension != Dimension::None {

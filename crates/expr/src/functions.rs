@@ -162,10 +162,8 @@ impl Checker<'_> {
         let sum = self.formulas.binary(Binary::Add, xx, yy);
         let r = self.root(sum);
         // For x > 0: y/(r + x). Else (r - x)/y, which does not cancel.
-        let (right, left) = (self.formulas.binary(Binary::Less, zero, x), {
-            let right = self.formulas.binary(Binary::Less, zero, x);
-            self.formulas.not(right)
-        });
+        let right = self.formulas.binary(Binary::Less, zero, x);
+        let left = self.formulas.not(right);
         let (beyond, before) = (self.formulas.binary(Binary::Add, r, x), self.formulas.binary(Binary::Sub, r, x));
         let half = |this: &mut Self, open: Part, ratio: Part| {
             let angle = this.formulas.unary(Unary::Atan, ratio);

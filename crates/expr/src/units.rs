@@ -1,5 +1,7 @@
 //! Units in formulas: products and powers of symbols, `N*m/rad`, `m/s^2`.
 
+use hwasp_core::split_quantity;
+
 use crate::error::ExprError;
 use crate::exponents::Exponents;
 
@@ -80,19 +82,10 @@ pub fn parse_unit(text: &str) -> Option<(f64, Exponents)> {
 /// # Errors
 /// Of a text that is neither.
 pub fn quantity(text: &str) -> Result<(f64, Option<Exponents>), ExprError> {
-    let trimmed = text.trim();
-    let split = trimmed
-        .char_indices()
-        .find(|&(i, c)| {
-            let exponent = matches!(c, 'e' | 'E')
-                && trimmed[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
-            !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_') || exponent)
-        })
-        .map_or(trimmed.len(), |(i, _)| i);
     let whole = 0..text.len();
-    let (number, unit) = (trimmed[..split].replace('_', ""), trimmed[split..].trim());
+    let (number, unit) = split_quantity(text);
     let Ok(value) = number.parse::<f64>() else {
-        return Err(ExprError::new(whole, format!("`{trimmed}` does not begin with a number")));
+        return Err(ExprError::new(whole, format!("`{}` does not begin with a number", text.trim())));
     };
     if unit.is_empty() {
         return Ok((value, None));

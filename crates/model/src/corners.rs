@@ -31,7 +31,7 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
     let mut tape = shaping.formula.program.tape::<f64>(1);
     let mut out = vec![0.0; shaping.fields.len()];
     for number in 0..corners + INSIDE {
-        let mut design: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
+        let mut design = space.middle();
         for (k, &i) in shaping.parameters.iter().enumerate() {
             let (low, high) = space.bounds(i);
             design[i] = if number >= corners {

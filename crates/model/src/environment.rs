@@ -61,7 +61,6 @@ pub(crate) struct ModelEnvironment {
     told: Delay,
     kind: usize,
     success: bool,
-    terms: Vec<f64>,
     fault: Option<String>,
 }
 
@@ -70,12 +69,11 @@ impl ModelEnvironment {
         let mut spec = robot.env.clone();
         spec.horizon = horizon.unwrap_or(spec.horizon);
         let ready = |formula: Option<&Formula>| formula.map(Ready::new);
-        let design = robot.law.design();
         let mut environment = Self {
             body: Body::new(robot.simulation(), &robot.columns),
             making: None,
             shaped: Vec::new(),
-            design: (0..design.len()).map(|i| 0.5 * (design.bounds(i).0 + design.bounds(i).1)).collect(),
+            design: robot.law.design().middle(),
             values: vec![0.0; robot.columns.len()],
             random: ready(robot.random.as_ref().map(|(formula, _)| formula)),
             shaping: ready(robot.shaping.as_ref().map(|shaping| &shaping.formula)),
@@ -94,7 +92,6 @@ impl ModelEnvironment {
             told: Delay::default(),
             kind: 0,
             success: false,
-            terms: vec![0.0; robot.terms.len()],
             fault: None,
             robot: Arc::clone(robot),
             spec,
@@ -204,7 +201,6 @@ impl ModelEnvironment {
         (self.taken, self.success, self.kind) = (0, false, 0);
         self.effort.fill(0.0);
         self.command.fill(0.0);
-        self.terms.fill(0.0);
         // Nothing of the episode before: what comes may follow on any other.
         for (value, column) in self.values.iter_mut().zip(&self.robot.columns) {
             if matches!(column, Column::Memory(_) | Column::Draw(..)) {
@@ -328,11 +324,8 @@ impl Environment for ModelEnvironment {
         self.remember();
         let outputs = self.robot.outputs;
         let terms = &self.step.out[outputs.terms_at()];
-        let mut reward = 0.0;
-        for (sum, &term) in self.terms.iter_mut().zip(terms) {
-            *sum += term;
-            reward += term;
-        }
+        // From 0, not from -0 as `sum` begins.
+        let reward = terms.iter().fold(0.0, |reward, term| reward + term);
         let holds = |at: Option<usize>| at.is_some_and(|at| self.step.out[at] != 0.0);
         self.success = holds(outputs.success_at());
         let end = if holds(outputs.ends_at()) {

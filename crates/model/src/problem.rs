@@ -56,7 +56,7 @@ const EXPLORED: f64 = 0.15;
 /// not move it.
 fn effort_std(robot: &Robot) -> Vec<Option<f64>> {
     let (space, ports) = (robot.law.design(), &robot.env.command);
-    let design: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
+    let design = space.middle();
     let middle: Vec<f64> = ports.iter().map(|port| 0.5 * (port.lo + port.hi)).collect();
     let state = vec![0.0; robot.states.len()];
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; robot.env.effort.len()];

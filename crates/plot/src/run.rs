@@ -43,7 +43,7 @@ pub fn plot_options(assembly: &Assembly, title: String) -> PlotOptions {
 /// Whether the design as trained is the design to build.
 fn trains_what_is_built(assembly: &Assembly) -> bool {
     let space = assembly.policy.space();
-    let middle: Vec<f64> = (0..space.len()).map(|i| 0.5 * (space.bounds(i).0 + space.bounds(i).1)).collect();
+    let middle = space.middle();
     assembly.worlds.training.law.as_built(&middle) == middle
 }
 

@@ -14,13 +14,7 @@ import gymnasium
 import mujoco
 import numpy as np
 
-HERE = pathlib.Path(__file__).parent
-ROBOTS = {
-    "half_cheetah": "HalfCheetah-v5",
-    "hopper": "Hopper-v5",
-    "inverted_double_pendulum": "InvertedDoublePendulum-v5",
-    "reacher": "Reacher-v5",
-}
+from robots import HERE, ROBOTS
 
 
 def numbers(values):

@@ -13,7 +13,7 @@ import time
 
 import gymnasium
 
-from parity import HERE, ROBOTS
+from robots import HERE, ROBOTS
 
 
 def vector(name, kind, environments, steps):
@@ -46,10 +46,10 @@ def main():
         command = ["cargo", "run", "--release", "-p", "hwasp-builtin", "--example", "robot_throughput", "--", str(folder)]
         output = subprocess.run(command, cwd=HERE, capture_output=True, text=True, check=True).stdout
     for ours in json.loads(output.splitlines()[-1]):
-        robot, rate = ours["robot"], ours["steps_per_s"]
+        robot, one, all_cores = ours["robot"], ours["steps_per_s"], ours["all_cores_steps_per_s"]
         kind, best = max(gym[robot].items(), key=lambda item: item[1])
-        print(f"{robot}: {rate:,.0f} steps/s on one thread, {rate / ours['bare_steps_per_s']:.3f} of the bare engine, "
-              f"{rate / best:.1f} times Gymnasium's fastest ({kind}: {best:,.0f})")
+        print(f"{robot}: {one:,.0f} steps/s on one thread, {one / ours['bare_steps_per_s']:.3f} of the bare engine, {all_cores:,.0f} on "
+              f"all cores; Gymnasium's fastest ({kind}) {best:,.0f}: {one / best:.1f} and {all_cores / best:.1f} times")
 
 
 if __name__ == "__main__":

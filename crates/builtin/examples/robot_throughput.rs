@@ -3,13 +3,15 @@
 //!
 //!     robot_throughput FOLDER [STEPS]         a folder with NAME.toml and models; default: 50,000 steps
 //!
-//! Both run on one thread, in turn, three times; the fastest of each counts. `python benches/gym/speed.py` adds Gymnasium.
+//! Both run on one thread, in turn, three times; the fastest of each counts. Then the environments run on all cores at once.
+//! `python benches/gym/speed.py` adds Gymnasium.
 
 #![allow(clippy::print_stdout)] // a program
 
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::thread;
 use std::time::Instant;
 
 use hwasp_core::{Purpose, Stream, stream};
@@ -39,10 +41,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             ours = ours.min(environment(&experiment, steps));
             bare = bare.min(engine(&experiment, steps)?);
         }
+        let cores = thread::available_parallelism()?.get();
+        let all = (0..ROUNDS).map(|_| at_once(&experiment, steps, cores)).fold(f64::INFINITY, f64::min);
         let rate = |seconds: f64| steps as f64 / seconds;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        println!("{name:<26} {:>9.0} steps/s, bare engine {:>9.0}: {:.3} of it", rate(ours), rate(bare), bare / ours);
-        figures.push(json!({ "robot": name, "steps_per_s": rate(ours), "bare_steps_per_s": rate(bare) }));
+        let (one, bare, all) = (rate(ours), rate(bare), cores as f64 * rate(all));
+        println!(
+            "{name:<26} {one:>9.0} steps/s, bare engine {bare:>9.0}: {:.3} of it; {cores} cores {all:>9.0}",
+            one / bare
+        );
+        figures
+            .push(json!({ "robot": name, "steps_per_s": one, "bare_steps_per_s": bare, "all_cores_steps_per_s": all }));
     }
     println!("{}", json!(figures));
     Ok(())
@@ -74,6 +83,13 @@ fn environment(experiment: &Experiment, steps: usize) -> f64 {
             robot.reset(&mut chance);
         }
     }
+    began.elapsed().as_secs_f64()
+}
+
+/// Seconds until each of so many threads has taken so many steps.
+fn at_once(experiment: &Experiment, steps: usize, threads: usize) -> f64 {
+    let began = Instant::now();
+    thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(|| environment(experiment, steps)))));
     began.elapsed().as_secs_f64()
 }
 

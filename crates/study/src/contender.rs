@@ -16,8 +16,23 @@ pub struct Contender {
 }
 
 impl Contender {
-    /// Reads `hwasp`, or `fixed:middle`, `fixed:random`, `fixed:2 N/m`: a method, and after a colon where the design
-    /// begins, which is where hardware that is fixed stays.
+    /// Reads some of them, separated by commas; those within braces and quotes separate nothing.
+    pub fn parse_list(text: &str) -> Result<Vec<Self>, CompareError> {
+        let (mut depth, mut quoted) = (0_usize, false);
+        let separates = |c: char| {
+            match c {
+                '"' => quoted = !quoted,
+                '{' if !quoted => depth += 1,
+                '}' if !quoted => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            c == ',' && depth == 0 && !quoted
+        };
+        text.split(separates).map(Self::parse).collect()
+    }
+
+    /// Reads `hwasp`, or `fixed:middle`, `fixed:random`, `fixed:2 N/m`, `fixed:{ gear = 70, shank = "0.5 m" }`: a method, and
+    /// after a colon where the design begins, which is where hardware that is fixed stays.
     pub fn parse(text: &str) -> Result<Self, CompareError> {
         let text = text.trim();
         let (name, initial) = text.split_once(':').map_or((text, None), |(name, initial)| (name, Some(initial.trim())));
@@ -35,6 +50,8 @@ impl Contender {
         Ok(match initial {
             // A random design is the one that the experiment draws.
             Some("random") => contender.with("design.initial", "\"logit\""),
+            // One for each parameter, as the experiment has it.
+            Some(table) if table.starts_with('{') => contender.with("design.initial", table),
             // Quoted, so that a number is the text that a quantity has to be.
             Some(initial) => contender.with("design.initial", &format!("{initial:?}")),
             None => contender,

@@ -163,6 +163,23 @@ fn what_a_comparison_writes() {
     assert!(fixed.design_totals[0].1.iter().all(|gear| (gear - 0.3).abs() < 1e-9));
 }
 
+/// What stands within braces and quotes is one contender's.
+#[test]
+fn a_list_of_contenders() {
+    let text = r#"hwasp,fixed:{gear = 0.7, shank = "0.5 m"}, fixed:"1, 2",cmaes"#;
+    let labels: Vec<_> = Contender::parse_list(text).unwrap().into_iter().map(|contender| contender.label).collect();
+    let wanted = ["hwasp", r#"fixed:{gear = 0.7, shank = "0.5 m"}"#, r#"fixed:"1, 2""#, "cmaes"];
+    assert_eq!(labels, wanted);
+}
+
+/// A table says where each parameter stays.
+#[test]
+fn fixed_by_name() {
+    let grid = grid(&["fixed:{ gear = 0.7 }"], "0.2");
+    let comparison = figures(&run(&grid, &empty("by_name"), &Counter::default()).unwrap());
+    assert!(comparison.methods[0].design_totals[0].1.iter().all(|gear| (gear - 0.7).abs() < 1e-9));
+}
+
 #[test]
 fn contenders_that_are_none() {
     for (text, told) in [("hwsap", "`hwsap` names no method: the methods are hwasp,"), ("fixed:", "`fixed:` names no")]

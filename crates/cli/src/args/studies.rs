@@ -9,8 +9,9 @@ use super::parse::{MOST_SEEDS, MOST_STEPS, finite, path, threads, whole};
 pub(crate) struct CompareArgs {
     /// A name from `hwasp list`, or the path of a TOML file
     pub(crate) experiment: String,
-    /// Methods, separated by commas; fixed:middle, fixed:random and fixed:"2 N/m" say where hardware stays that is fixed
-    #[arg(long, value_delimiter = ',', default_value = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed")]
+    /// Methods, separated by commas; fixed:middle, fixed:random, fixed:"2 N/m" and fixed:'{gear = 70, shank = "0.5 m"}' say where
+    /// hardware stays that is fixed
+    #[arg(long, default_value = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed")]
     pub(crate) methods: Vec<String>,
     /// Seeds of each method, from 0
     #[arg(long, default_value = "5", allow_negative_numbers = true, value_parser = whole(1..=MOST_SEEDS))]

@@ -17,8 +17,8 @@ use crate::grid_progress::GridProgress;
 use crate::output;
 
 pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failure> {
-    let contenders = args.methods.iter().map(|text| Contender::parse(text)).collect::<Result<Vec<_>, _>>();
-    let contenders = contenders.map_err(Failure::input)?;
+    let contenders = args.methods.iter().map(|text| Contender::parse_list(text)).collect::<Result<Vec<_>, _>>();
+    let contenders = contenders.map_err(Failure::input)?.concat();
     let further: Vec<_> = args.env_steps.map(|steps| ("env-steps", steps.to_string())).into_iter().collect();
     let layers = layers(&args.experiment, &args.set, &further, catalogue)?;
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());

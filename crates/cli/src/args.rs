@@ -103,6 +103,8 @@ pub(crate) enum Command {
     Schema(SchemaArgs),
     /// List the experiments that come with the program
     List,
+    /// Print the library of laws (gears, springs, tendons, linkages, motors) that formulas of experiments call by name
+    Laws,
     /// Draw the law of an experiment as a computational graph
     Graph(GraphArgs),
     /// Begin a project for a mechanism of your own: law, plant, task, experiment and tests, ready to train

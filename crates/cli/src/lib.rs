@@ -77,6 +77,7 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::Check(check) => commands::check::run(check, catalogue),
         Command::Schema(schema) => commands::schema::run(schema, catalogue),
         Command::List => commands::list::run(catalogue),
+        Command::Laws => commands::laws::run(),
         Command::Graph(graph) => commands::graph::run(graph, catalogue),
         Command::Init(init) => commands::init::run(init),
     }

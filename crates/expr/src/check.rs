@@ -5,6 +5,7 @@ use std::ops::Range;
 use hwasp_diff::{Binary, Unary};
 
 use crate::error::ExprError;
+use crate::expand::Frame;
 use crate::exponents::Quantity;
 use crate::formulas::{Formulas, MOST_STEPS, Part, Value};
 use crate::parser::{component, parse};
@@ -14,6 +15,8 @@ use crate::syntax::{Index, Node, Operator, Path, Tree, short};
 
 /// The longest vector.
 const LONGEST: usize = 10_000;
+/// The most operations within each other, those of functions from text included.
+const DEEPEST: usize = 1000;
 /// The largest whole exponent that is written out as products.
 const LARGEST_POWER: f64 = 16.0;
 
@@ -24,7 +27,7 @@ impl Formulas {
     /// The first thing that is wrong with it.
     pub fn read(&mut self, text: &str, scope: &mut dyn Scope) -> Result<Value, ExprError> {
         let tree = parse(text)?;
-        let value = Checker { formulas: self, scope }.value(&tree)?;
+        let value = Checker::new(self, scope).value(&tree)?;
         if self.is_full() {
             let message = format!("the formulas have more than {MOST_STEPS} operations");
             return Err(
@@ -39,14 +42,37 @@ impl Formulas {
 pub(crate) struct Checker<'c> {
     pub(crate) formulas: &'c mut Formulas,
     pub(crate) scope: &'c mut dyn Scope,
+    /// The call whose formula is read, where it is one of a function from text.
+    pub(crate) frame: Option<Frame>,
+    /// Operations that are being read, one within the other.
+    pub(crate) depth: usize,
+    /// Whether the fault at hand was told as one of a function.
+    pub(crate) told: bool,
+}
+
+impl<'c> Checker<'c> {
+    pub(crate) fn new(formulas: &'c mut Formulas, scope: &'c mut dyn Scope) -> Self {
+        Self { formulas, scope, frame: None, depth: 0, told: false }
+    }
 }
 
 impl Checker<'_> {
+    /// Goes a level deeper, as far as the stack surely allows.
+    pub(crate) fn deeper(&mut self, tree: &Tree) -> Result<(), ExprError> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            let message = format!("more than {DEEPEST} operations stand within each other");
+            return Err(ExprError::new(tree.span.clone(), message).hint("give parts of it names of their own"));
+        }
+        Ok(())
+    }
+
     /// The operations of a tree.
     pub(crate) fn value(&mut self, tree: &Tree) -> Result<Value, ExprError> {
         if self.formulas.is_full() {
             return Err(ExprError::new(tree.span.clone(), "the formulas have too many operations"));
         }
+        self.deeper(tree)?;
         let value = match &tree.node {
             Node::Number(value, unit) => {
                 let quantity = unit.map_or(Quantity::Number, Quantity::Known);
@@ -75,6 +101,8 @@ impl Checker<'_> {
             let message = format!("a vector of {} components is longer than {LONGEST}", value.parts.len());
             return Err(ExprError::new(tree.span.clone(), message));
         }
+        self.count_expanded(&value, &tree.span)?;
+        self.depth -= 1;
         Ok(value)
     }
 
@@ -94,15 +122,19 @@ impl Checker<'_> {
         list.ok_or_else(|| ExprError::new(span.clone(), "the list is empty"))
     }
 
-    fn name(&mut self, path: &Path, span: &Range<usize>) -> Result<Value, ExprError> {
+    pub(crate) fn name(&mut self, path: &Path, span: &Range<usize>) -> Result<Value, ExprError> {
         if path.len() == 1 && !path.quoted[0] && path.first() == "pi" {
             let parts = vec![self.formulas.constant(std::f64::consts::PI)];
             return Ok(Value { parts, quantity: Quantity::Number });
         }
-        let symbol = self.scope.name(self.formulas, path).map_err(|error| name_error(error, path, span))?;
-        self.scope.read(path, span);
-        let mut value = Value { parts: symbol.parts, quantity: symbol.quantity };
-        for at in symbol.used..path.len() {
+        let (mut value, used) = if let Some(argument) = self.argument(path) {
+            (argument, 1)
+        } else {
+            let known = self.scope.name(self.formulas, path);
+            let symbol = known.map_err(|error| name_error(error, path, span))?;
+            (Value { parts: symbol.parts, quantity: symbol.quantity }, symbol.used)
+        };
+        for at in used..path.len() {
             let here = path.spans[at].clone();
             let letter = path.word(at).unwrap_or_default();
             let Some(index) = component(letter) else {

@@ -26,6 +26,8 @@ pub struct Value {
 #[derive(Clone, Debug, Default)]
 pub struct Formulas {
     steps: Vec<Step>,
+    /// What the formulas of functions have come to.
+    pub(crate) expanded: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

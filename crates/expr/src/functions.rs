@@ -10,8 +10,7 @@ use crate::exponents::Quantity;
 use crate::formulas::{Part, Value};
 use crate::reference::FUNCTIONS;
 use crate::scope::Distribution;
-use crate::suggest::suggest;
-use crate::syntax::{Tree, short};
+use crate::syntax::Tree;
 
 /// Functions of pure numbers that are one operation.
 const ELEMENTARY: [(&str, Unary); 7] = [
@@ -28,18 +27,9 @@ impl Checker<'_> {
     /// A function of some arguments.
     pub(crate) fn call(&mut self, name: &str, trees: &[Tree], span: &Range<usize>) -> Result<Value, ExprError> {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
-            let names: Vec<String> = FUNCTIONS.iter().map(|function| function.name.to_owned()).collect();
-            let told =
-                ExprError::new(span.start..span.start + name.len(), format!("there is no function `{}`", short(name)));
-            return Err(suggest(told, name, &names));
+            return self.call_text(name, trees, span);
         };
-        let (least, most) = function.arguments();
-        if trees.len() < least || trees.len() > most {
-            let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
-            let plural = if most == 1 { "argument" } else { "arguments" };
-            let message = format!("{name} takes {wanted} {plural}, and has {}", trees.len());
-            return Err(ExprError::new(span.clone(), message).hint(format!("write it {}", function.usage)));
-        }
+        function.count_arguments(trees.len(), span)?;
         match name {
             "where" => return self.choice(trees, span),
             "any" | "all" => {
@@ -151,7 +141,8 @@ impl Checker<'_> {
         let x = self.formulas.binary(Binary::Min, above, high);
         let square = self.formulas.binary(Binary::Mul, x, x);
         let rest = self.formulas.binary(Binary::Sub, high, square);
-        let root = self.formulas.unary(Unary::Sqrt, rest);
+        // At ±1 and beyond its derivative is 0.
+        let root = self.root(rest);
         self.atan2(x, root)
     }
 

@@ -41,10 +41,13 @@
 
 mod check;
 mod error;
+mod expand;
 mod exponents;
 mod formulas;
+mod function;
 mod functions;
 mod lexer;
+mod library;
 mod parser;
 mod quaternion;
 mod reference;
@@ -56,6 +59,8 @@ mod units;
 pub use error::ExprError;
 pub use exponents::{Exponents, Quantity};
 pub use formulas::{Formulas, Part, Value};
+pub use function::{Function, Parameter, Signature, name_fault};
+pub use library::{LIBRARY, LawDoc, laws};
 pub use parser::LONGEST_TEXT;
 pub use reference::{FUNCTIONS, FunctionDoc};
 pub use scope::{Distribution, NameError, Scope, Symbol};

@@ -1,5 +1,9 @@
 //! What functions there are, for messages and the reference.
 
+use std::ops::Range;
+
+use crate::error::ExprError;
+
 /// A function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FunctionDoc {
@@ -17,6 +21,18 @@ impl FunctionDoc {
         let inside = self.usage.split_once('(').map_or("", |(_, rest)| rest.trim_end_matches(')'));
         let count = inside.split(',').count();
         if inside.contains('…') { (count - 1, usize::MAX) } else { (count, count) }
+    }
+
+    /// Refuses a call with another number of arguments.
+    pub(crate) fn count_arguments(&self, count: usize, span: &Range<usize>) -> Result<(), ExprError> {
+        let (least, most) = self.arguments();
+        if (least..=most).contains(&count) {
+            return Ok(());
+        }
+        let wanted = if least == most { least.to_string() } else { format!("at least {least}") };
+        let plural = if most == 1 { "argument" } else { "arguments" };
+        let message = format!("{} takes {wanted} {plural}, and has {count}", self.name);
+        Err(ExprError::new(span.clone(), message).hint(format!("write it {}", self.usage)))
     }
 }
 

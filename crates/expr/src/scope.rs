@@ -1,9 +1,10 @@
 //! What names stand for.
 
-use std::ops::Range;
+use std::sync::Arc;
 
 use crate::exponents::Quantity;
 use crate::formulas::{Formulas, Part, Value};
+use crate::function::Function;
 use crate::syntax::Path;
 
 /// What a name stands for.
@@ -97,6 +98,13 @@ pub trait Scope {
         false
     }
 
-    /// Told of each name that was read, with where it stands.
-    fn read(&mut self, _path: &Path, _span: &Range<usize>) {}
+    /// A function of the user's by its name. Those of the library are there everywhere.
+    fn function(&self, _name: &str) -> Option<Arc<Function>> {
+        None
+    }
+
+    /// The names of the user's functions, of which the nearest is told.
+    fn functions(&self) -> Vec<String> {
+        Vec::new()
+    }
 }

@@ -19,6 +19,7 @@ const HORIZON: usize = 1000;
 /// The most columns that a law's states and an observation have.
 const MOST_OBSERVED: usize = 10_000;
 
+mod define;
 mod episode;
 mod ports;
 mod shaping;
@@ -31,6 +32,8 @@ pub(super) struct Compiler<'c, 'r> {
     section: &'c Section<'r>,
     formulas: Formulas,
     names: Names,
+    /// Keys of `[task.define]` that were read.
+    defined: Vec<String>,
     sound: bool,
 }
 
@@ -79,7 +82,8 @@ impl Robot {
         let anatomy = Anatomy::of(&simulation);
         let time_step = anatomy.timestep * settings.frame_skip as f64;
         let names = Names { anatomy, time_step, ..Names::default() };
-        let mut compiler = Compiler { settings, section, formulas: Formulas::default(), names, sound: true };
+        let formulas = Formulas::default();
+        let mut compiler = Compiler { settings, section, formulas, names, defined: Vec::new(), sound: true };
         compiler.robot(main, files, additions, simulation, &spec)
     }
 }
@@ -96,6 +100,8 @@ impl Compiler<'_, '_> {
         let settings = self.settings;
         let space = self.design()?;
         let uniforms = space.names();
+        // Those that need nothing that is drawn, nor commands: what is drawn may follow them.
+        self.definitions(false);
         let random = self.random();
         let targets = self.targets();
         let direct = self.commands(&targets);

@@ -2,8 +2,10 @@
 
 mod attributes;
 
+use std::sync::Arc;
+
 use hwasp_core::Dimension;
-use hwasp_expr::{Distribution, Formulas, NameError, Part, Path, Quantity, Scope, Symbol, Value};
+use hwasp_expr::{Distribution, Formulas, Function, NameError, Part, Path, Quantity, Scope, Symbol, Value};
 
 pub(crate) use self::attributes::attributes;
 use self::attributes::{ENERGY, LENGTH, SPEED, three};
@@ -84,6 +86,8 @@ pub(crate) struct Names {
     pub(crate) efforts: Vec<(String, Quantity)>,
     /// Design parameters, definitions, random quantities.
     pub(crate) own: Vec<OwnName>,
+    /// Functions of `[task.define]`.
+    pub(crate) functions: Vec<Arc<Function>>,
     /// What is remembered from step to step.
     pub(crate) memory: Vec<Part>,
     /// Time of an environment step, s.
@@ -139,6 +143,14 @@ impl Scope for InPlace<'_> {
             return Err("a law and a definition draw nothing: name the draw in [task.random]".to_owned());
         };
         Ok((0..count).map(|_| formulas.column(self.names.columns.draw(stage, from))).collect())
+    }
+
+    fn function(&self, name: &str) -> Option<Arc<Function>> {
+        self.names.functions.iter().find(|function| function.name() == name).cloned()
+    }
+
+    fn functions(&self) -> Vec<String> {
+        self.names.functions.iter().map(|function| function.name().to_owned()).collect()
     }
 
     fn width(&self) -> usize {

@@ -270,15 +270,6 @@ fn check_name(section: &Section<'_>, key: &str, name: &str, entry: &Entry) -> Op
 
 /// Why a name of one's own is none that formulas can use.
 pub(crate) fn name_fault(name: &str) -> Option<String> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    if name.len() > 50 || !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(plain) {
-        return Some("names begin with a letter and have up to 50 letters, digits and _".to_owned());
-    }
-    if crate::names::RESERVED.contains(&name) {
-        return Some(format!("`{name}` has a meaning in formulas"));
-    }
-    if hwasp_expr::parse_unit(name).is_some() {
-        return Some(format!("`{name}` is a unit"));
-    }
-    None
+    let reserved = crate::names::RESERVED.contains(&name);
+    hwasp_expr::name_fault(name).or_else(|| reserved.then(|| format!("`{name}` has a meaning in formulas")))
 }

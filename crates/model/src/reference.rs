@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hwasp_expr::FUNCTIONS;
+use hwasp_expr::{FUNCTIONS, Quantity, laws};
 
 use crate::names::attributes;
 
@@ -25,7 +25,7 @@ const OTHERS: [(&str, &str); 13] = [
     ("pi", "3.14159…"),
 ];
 
-/// Two tables in Markdown: names, then functions.
+/// Tables in Markdown: names, functions, laws.
 pub fn reference() -> String {
     let mut text = "| name | value |\n|---|---|\n".to_owned();
     // Writing to a string cannot fail.
@@ -41,6 +41,15 @@ pub fn reference() -> String {
     text.push_str("\n| function | value |\n|---|---|\n");
     for function in FUNCTIONS {
         let _ = writeln!(text, "| `{}` | {} |", function.usage, function.about);
+    }
+    text.push_str("\n| law of the library | gives | what it is (source) |\n|---|---|---|\n");
+    for law in laws() {
+        let gives = match law.gives() {
+            Ok(Quantity::Known(exponents)) => exponents.to_string(),
+            Ok(Quantity::Number) => "a number or rad".to_owned(),
+            _ => "as `value`".to_owned(),
+        };
+        let _ = writeln!(text, "| `{}` | {gives} | {} ({}) |", law.function.signature(), law.about, law.source);
     }
     text
 }

@@ -7,6 +7,7 @@ pub(crate) mod eval;
 pub(crate) mod export;
 pub(crate) mod graph;
 pub(crate) mod init;
+pub(crate) mod laws;
 pub(crate) mod list;
 pub(crate) mod parts;
 pub(crate) mod play;

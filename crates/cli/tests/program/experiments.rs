@@ -36,3 +36,30 @@ fn the_law_as_a_graph() {
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{svg}");
     assert!(svg.contains("mass-spring · minimal"), "{svg}");
 }
+
+/// It is text of the language: it can stand in an experiment, and a law that calls it is drawn as the formula that it stands for.
+#[cfg(feature = "mujoco")]
+#[test]
+fn the_library_of_laws() {
+    let sandbox = Sandbox::new("laws");
+    let output = sandbox.run("laws");
+    let library = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && library.contains("\"torsion_spring(angle: rad"), "{library}");
+    let arm = include_str!("../../../../experiments/balanced-arm.toml");
+    std::fs::create_dir(sandbox.path("robots")).unwrap();
+    sandbox.write("robots/arm.xml", include_str!("../../../../experiments/robots/arm.xml"));
+    let law = "command.shoulder - stiffness * 0.1 m * 0.1 m * sin(joint.shoulder.pos)";
+    assert!(arm.contains(law));
+    let torque = "-stiffness * (joint.shoulder.pos - 0.2 rad)";
+    let drawn = |law_there: &str, tables: &str| {
+        let text = arm.replace(law, law_there).replace("N/m", "N*m/rad");
+        sandbox.write("mine.toml", format!("{text}\n{tables}"));
+        let output = sandbox.run("graph mine.toml");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let by_hand = drawn(torque, "");
+    let by_name = "torsion_spring(joint.shoulder.pos, stiffness, 0.2)";
+    assert_eq!(drawn(by_name, ""), by_hand);
+    assert_eq!(drawn(by_name, &format!("[task.define]\n{library}")), by_hand);
+}

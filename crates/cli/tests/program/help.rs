@@ -17,8 +17,7 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let commands =
-        "train eval design export parts tolerances play plot report compare reproduce check schema list graph init";
+    let commands = "train eval design export parts tolerances play plot report compare reproduce check schema list laws graph init";
     let lines: Vec<String> = commands.split(' ').map(|command| format!("{command} --help")).collect();
     insta::assert_snapshot!(sandbox.transcript(&lines.iter().map(String::as_str).collect::<Vec<_>>()));
 }

@@ -7,47 +7,10 @@ use hwasp_settings::text::shorten;
 
 use super::{Compiler, HORIZON, MOST_OBSERVED};
 use crate::columns::{Column, Reading};
-use crate::names::{InPlace, OwnName, Place};
-use crate::texts::{Named, tell};
+use crate::names::{InPlace, Place};
+use crate::texts::Named;
 
 impl Compiler<'_, '_> {
-    /// Names for formulas, which may name each other.
-    pub(super) fn definitions(&mut self, tells: bool) {
-        let mut left: Vec<&(String, String)> = self.settings.define.iter().collect();
-        if tells {
-            left.retain(|(name, _)| self.own_name("define", name));
-        }
-        loop {
-            let before = left.len();
-            left.retain(|(name, text)| {
-                let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
-                match self.formulas.read(text, &mut scope) {
-                    Ok(value) => {
-                        self.names.own.push(OwnName { name: name.clone(), value });
-                        false
-                    }
-                    Err(_) => true,
-                }
-            });
-            if left.len() == before || left.is_empty() {
-                break;
-            }
-        }
-        if tells {
-            let names: Vec<String> = left.iter().map(|(name, _)| name.clone()).collect();
-            for (name, text) in left {
-                let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
-                let Err(mut error) = self.formulas.read(text, &mut scope) else { continue };
-                if let Some(other) = names.iter().find(|other| error.message == format!("`{other}` is not known")) {
-                    error.message = format!("`{other}` is itself wrong, or leads back to `{name}`");
-                    error.hint = Some("a definition can name those that do not name it".to_owned());
-                }
-                tell(self.section, &["define", name], 0, &error);
-                self.sound = false;
-            }
-        }
-    }
-
     /// Where an episode starts: the values, and the positions and velocities that they are for.
     pub(super) fn start(&mut self) -> Option<(Vec<Part>, Vec<Reading>)> {
         let settings = self.settings;

@@ -67,10 +67,12 @@ impl Compiler<'_, '_> {
             commands: candidates.iter().map(|name| (name.clone(), Quantity::Unknown)).collect(),
             efforts: self.names.efforts.clone(),
             own: self.names.own.clone(),
+            functions: self.names.functions.clone(),
             memory: Vec::new(),
             time_step: self.names.time_step,
         };
-        let kept = (std::mem::replace(&mut self.names, names), self.formulas.clone(), self.sound);
+        let names = std::mem::replace(&mut self.names, names);
+        let kept = (names, self.formulas.clone(), self.sound, self.defined.clone());
         self.definitions(false);
         let mut read = Vec::new();
         for (_, text) in &self.settings.law {
@@ -82,7 +84,7 @@ impl Compiler<'_, '_> {
                 _ => None,
             }));
         }
-        (self.names, self.formulas, self.sound) = kept;
+        (self.names, self.formulas, self.sound, self.defined) = kept;
         read
     }
 

@@ -39,16 +39,20 @@ impl Compiler<'_, '_> {
 
     /// Whether names of one's own can be called so; faults are told.
     pub(super) fn own_name(&mut self, table: &str, name: &str) -> bool {
-        let why = name_fault(name).or_else(|| {
-            let known = self.names.own.iter().any(|own| own.name == name);
-            known.then(|| "something else has this name".to_owned())
-        });
-        if let Some(why) = why {
+        if let Some(why) = self.own_name_fault(name) {
             let message = format!("`{}` cannot be called so: {why}", shorten(name, 60));
             self.refuse(&[table, name], message, Some("take another name".into()));
             return false;
         }
         true
+    }
+
+    /// Why nothing new can be called so.
+    pub(super) fn own_name_fault(&self, name: &str) -> Option<String> {
+        name_fault(name).or_else(|| {
+            let known = self.names.own.iter().any(|own| own.name == name);
+            known.then(|| "something else has this name".to_owned())
+        })
     }
 
     /// What is drawn for an episode: its components, which have columns of their own.

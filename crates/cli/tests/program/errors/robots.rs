@@ -147,6 +147,39 @@ pub(super) const CASES: &[Case] = &[
     robot!("A definition with the name of a word", "", "[task.define]\njoint = \"1\"\n"),
     robot!("A definition with the name of a unit", "", "[task.define]\nkg = \"1\"\n"),
     robot!("A definition with a space in its name", "", "[task.define]\n\"a b\" = \"1\"\n"),
+    // Functions and laws of the library.
+    robot!(
+        "A function with too few arguments",
+        "observe = [\"spring(joint.knee.pos)\"]\n",
+        "[task.define]\n\"spring(angle, rest)\" = \"rest - angle\"\n"
+    ),
+    robot!("A function that calls itself", "", "[task.define]\n\"power(x)\" = \"x * power(x - 1)\"\n"),
+    robot!(
+        "Functions that lead back to each other",
+        "",
+        "[task.define]\n\"a(x)\" = \"2 * b(x)\"\n\"b(x)\" = \"2 * a(x)\"\n"
+    ),
+    robot!(
+        "A law that the library has not",
+        "",
+        "[task.law]\n\"joint.knee\" = \"torsion_sprng(joint.knee.pos, 1, 2)\"\n"
+    ),
+    robot!(
+        "An argument in another unit",
+        "",
+        "[task.law]\n\"joint.knee\" = \"torsion_spring(joint.knee.pos, 300 N/m, 0)\"\n"
+    ),
+    robot!(
+        "A function whose units do not go together where it is called",
+        "",
+        "[task.define]\n\"stretch(now, rest)\" = \"now - rest\"\n[task.law]\n\"joint.knee\" = \"stretch(joint.knee.pos, 1 m)\"\n"
+    ),
+    robot!("A function with the name of one of the language", "", "[task.define]\n\"sin(x)\" = \"x\"\n"),
+    robot!("A parameter with the name of a word", "", "[task.define]\n\"twice(joint)\" = \"2 * joint\"\n"),
+    robot!("A function without parameters", "", "[task.define]\n\"half()\" = \"0.5\"\n"),
+    robot!("A parameter in another unit than SI", "", "[task.define]\n\"twice(x: deg)\" = \"2 * x\"\n"),
+    robot!("Two functions of one name", "", "[task.define]\n\"f(x)\" = \"x\"\n\"f(x, y)\" = \"x + y\"\n"),
+    robot!("A name that a function does not know", "", "[task.define]\n\"twice(x)\" = \"2 * y\"\n"),
     robot!("A start of what is no state", "", "[task.start]\n\"body.torso.pos\" = \"[0, 0, 1]\"\n"),
     robot!("A start of as many values as do not fit", "", "[task.start]\n\"qpos\" = \"[1, 2]\"\n"),
     robot!("Two starts of one joint", "", "[task.start]\n\"joint.*.pos\" = \"0\"\n\"joint.knee.pos\" = \"1\"\n"),

@@ -1,0 +1,133 @@
+//! Names for formulas, and functions.
+
+use std::sync::Arc;
+
+use hwasp_expr::{ExprError, Function, Signature};
+
+use super::Compiler;
+use crate::names::{InPlace, OwnName, Place};
+use crate::parameter::name_fault;
+use crate::texts::tell;
+
+/// An entry of `[task.define]`.
+struct Definition<'s> {
+    key: &'s str,
+    text: &'s str,
+    /// None of a name for a formula.
+    function: Option<Arc<Function>>,
+}
+
+impl Definition<'_> {
+    fn name(&self) -> &str {
+        self.function.as_ref().map_or(self.key, |function| function.name())
+    }
+}
+
+impl Compiler<'_, '_> {
+    /// Names and functions, which may name each other. Each is read as soon as what it names is there, so that none leads back to
+    /// itself. What cannot be read is told, or left for later.
+    pub(super) fn definitions(&mut self, tells: bool) {
+        let settings = self.settings;
+        let mut left: Vec<Definition<'_>> = Vec::new();
+        for (key, text) in &settings.define {
+            if !self.defined.contains(key) {
+                let found = self.definition(key, text, &left, tells);
+                left.extend(found);
+            }
+        }
+        loop {
+            let before = left.len();
+            left.retain(|definition| {
+                let defined = self.define(definition).is_ok();
+                if defined {
+                    self.defined.push(definition.key.to_owned());
+                }
+                !defined
+            });
+            if left.len() == before || left.is_empty() {
+                break;
+            }
+        }
+        if !tells {
+            return;
+        }
+        for definition in &left {
+            let Err(mut error) = self.define(definition) else { continue };
+            let missing = |other: &&Definition<'_>| match &other.function {
+                Some(function) => error.message == format!("there is no function `{}`", function.name()),
+                None => error.message == format!("`{}` is not known", other.key),
+            };
+            if let Some(other) = left.iter().find(missing) {
+                let (name, other) = (definition.name(), other.name());
+                (error.message, error.hint) = if name == other {
+                    let hint = "a law has as many operations at every moment: write the steps out";
+                    (format!("`{name}` names itself"), Some(hint.to_owned()))
+                } else {
+                    let message = format!("`{other}` is itself wrong, or leads back to `{name}`");
+                    (message, Some("a definition can name those that do not name it".to_owned()))
+                };
+            }
+            tell(self.section, &["define", definition.key], 0, &error);
+            self.sound = false;
+        }
+    }
+
+    /// What a key and its text say, where both can be used; else the fault is told.
+    fn definition<'s>(
+        &mut self,
+        key: &'s str,
+        text: &'s str,
+        known: &[Definition<'_>],
+        tells: bool,
+    ) -> Option<Definition<'s>> {
+        if !key.contains('(') {
+            let free = if tells { self.own_name("define", key) } else { self.own_name_fault(key).is_none() };
+            return free.then_some(Definition { key, text, function: None });
+        }
+        let signature = Signature::parse(key).and_then(|signature| {
+            let mut names =
+                std::iter::once(&signature.name).chain(signature.parameters.iter().map(|known| &known.name));
+            let refuse = |message, hint: &str| ExprError { message, hint: Some(hint.to_owned()), span: 0..key.len() };
+            if let Some((name, why)) = names.find_map(|name| Some((name, name_fault(name)?))) {
+                return Err(refuse(format!("`{name}` cannot be called so: {why}"), "take another name"));
+            }
+            let mut others = known.iter().filter_map(|other| other.function.as_ref()).chain(&self.names.functions);
+            if others.any(|other| other.name() == signature.name) {
+                let hint = "give one of them another name: a function has one number of parameters";
+                return Err(refuse(format!("there are two functions `{}`", signature.name), hint));
+            }
+            Ok(signature)
+        });
+        let signature = match signature {
+            Ok(signature) => signature,
+            Err(error) => {
+                if tells {
+                    self.refuse(&["define", key], error.message, error.hint);
+                }
+                return None;
+            }
+        };
+        match Function::new(signature, text) {
+            Ok(function) => Some(Definition { key, text, function: Some(Arc::new(function)) }),
+            Err(error) => {
+                if tells {
+                    tell(self.section, &["define", key], 0, &error);
+                    self.sound = false;
+                }
+                None
+            }
+        }
+    }
+
+    fn define(&mut self, definition: &Definition<'_>) -> Result<(), ExprError> {
+        let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
+        if let Some(function) = &definition.function {
+            self.formulas.check(function, &mut scope)?;
+            self.names.functions.push(Arc::clone(function));
+        } else {
+            let value = self.formulas.read(definition.text, &mut scope)?;
+            self.names.own.push(OwnName { name: definition.key.to_owned(), value });
+        }
+        Ok(())
+    }
+}

@@ -28,6 +28,8 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
     let count = shaping.parameters.len();
     let corners = 1_usize << count.min(MOST);
     let names = space.names();
+    // Where anything follows training, as it begins, too.
+    let stages: &[f64] = if robot.columns.contains(&Column::Progress) { &[0.0, 1.0] } else { &[1.0] };
     let mut tape = shaping.formula.program.tape::<f64>(1);
     let mut out = vec![0.0; shaping.fields.len()];
     for number in 0..corners + INSIDE {
@@ -44,9 +46,7 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
                 low
             };
         }
-        let columns = columns(robot, &design, LUCK[number % LUCK.len()]);
         shaping.formula.program.bind(&design, &mut tape);
-        shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
         let at = || {
             let told = shaping.parameters.iter().map(|&i| format!("{} = {:.4}", names[i], design[i]));
             told.collect::<Vec<_>>().join(", ")
@@ -58,16 +58,21 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
                 format!("the model cannot be made with {}: {what}", at())
             }
         };
-        for (field, &value) in shaping.fields.iter().zip(&out) {
-            making.set(field, value).map_err(|error| refused(&error))?;
+        for &progress in stages {
+            let columns = columns(robot, &design, LUCK[number % LUCK.len()], progress);
+            shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
+            for (field, &value) in shaping.fields.iter().zip(&out) {
+                making.set(field, value).map_err(|error| refused(&error))?;
+            }
+            making.compile().map_err(|error| refused(&error))?;
         }
-        making.compile().map_err(|error| refused(&error))?;
     }
     Ok(())
 }
 
-/// The columns that a model is made from, with everything drawn in its middle for a `luck` of 0, and at its ends for -1 and 1.
-pub(crate) fn columns(robot: &Robot, design: &[f64], luck: f64) -> Vec<f64> {
+/// The columns that a model is made from at some progress of training, with everything drawn in its middle for a `luck` of 0, and at
+/// its ends for -1 and 1.
+pub(crate) fn columns(robot: &Robot, design: &[f64], luck: f64, progress: f64) -> Vec<f64> {
     let mut values = vec![0.0; robot.columns.len()];
     let random = robot.random.iter().flat_map(|(formula, _)| &formula.draws);
     for &(from, column) in random.chain(robot.shaping.iter().flat_map(|shaping| &shaping.formula.draws)) {
@@ -77,7 +82,7 @@ pub(crate) fn columns(robot: &Robot, design: &[f64], luck: f64) -> Vec<f64> {
         };
     }
     if let Some(at) = robot.columns.iter().position(|column| *column == Column::Progress) {
-        values[at] = 1.0;
+        values[at] = progress;
     }
     if let Some((formula, columns)) = &robot.random {
         let mut tape = formula.program.tape::<f64>(1);

@@ -96,7 +96,7 @@ impl Mechanism for Model {
         let robot = &self.0;
         let mut making = robot.additions.spec(&robot.main, &robot.files)?;
         if let Some(shaping) = &robot.shaping {
-            let columns = crate::corners::columns(robot, design, 0.0);
+            let columns = crate::corners::columns(robot, design, 0.0, 1.0);
             let mut tape = shaping.formula.program.tape::<f64>(1);
             let mut out = vec![0.0; shaping.fields.len()];
             shaping.formula.program.bind(design, &mut tape);

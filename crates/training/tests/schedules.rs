@@ -5,8 +5,9 @@
 use std::sync::{Arc, Mutex};
 
 use hwasp_core::{EnvSpec, Environment, Step, Stream};
-use hwasp_testing::{run, small};
-use hwasp_training::Assembly;
+use hwasp_experiment::{Files, Folder, Layers};
+use hwasp_testing::{executor, run, small};
+use hwasp_training::{Assembly, evaluate};
 
 /// Writes down how much of training is done at each start.
 struct Recording {
@@ -95,4 +96,25 @@ fn a_training_begins_where_its_schedules_are_to_begin() {
     assert_eq!(trained.params, assembly.init());
     let (assembly, _) = recorded("hwasp", &[("ppo.learning_rate_final", "0.0")]);
     assert_ne!(run(&assembly, None, 1).0.params, assembly.init());
+}
+
+/// A robot from text is rewarded by how much of training is done; evaluated it is at the end, however early that is.
+#[test]
+fn formulas_know_the_progress_of_training_and_evaluations_its_end() {
+    let model = r#"<mujoco><worldbody><body><joint name="a"/><geom size="0.1"/></body></worldbody>
+        <actuator><motor name="a" joint="a" ctrlrange="-1 1"/></actuator></mujoco>"#;
+    let text = "name = \"late\"\n[task]\nproblem = \"model\"\nmodel = \"a.xml\"\nhorizon = 10\nobserve = [\"qpos\"]\n\
+                [task.reward]\nprogress = \"progress\"\n[train]\nenv_steps = 400\nepisodes_per_iteration = 10\nepisode_steps = 10\n";
+    let files = Files::from([("a.xml".to_owned(), Arc::from(model.as_bytes()))]);
+    let layers = Layers::from_text("late.toml", text).unwrap().with_folder(Folder::Sent(Arc::new(files)));
+    let experiment = hwasp_testing::resolve(layers, Some("fixed")).unwrap_or_else(|faults| panic!("{faults}"));
+    let assembly = Assembly::new(&experiment).unwrap();
+    let (trained, keeper) = run(&assembly, None, 1);
+    let returns: Vec<f64> = keeper.rows.iter().map(|row| row.undiscounted_return).collect();
+    assert!(returns.len() == 4, "{returns:?}");
+    for (found, progress) in returns.iter().zip([0.0, 0.25, 0.5, 0.75]) {
+        assert!((found - 10.0 * progress).abs() < 1e-5, "{returns:?}");
+    }
+    let evaluation = evaluate(&assembly, &trained.params, (5, 1), &*executor(1)).unwrap();
+    assert_eq!(evaluation.undiscounted_return.mean, 10.0);
 }

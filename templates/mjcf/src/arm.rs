@@ -1,4 +1,19 @@
 //! The plant: physics without purpose, by the MuJoCo engine. What there is stands in `mechanism.xml`.
+//!
+//! A task reads what it needs of `arm.simulation`. Names are looked up once, in `Arm::new`; what they give is kept:
+//!
+//! | of | looked up by | read by |
+//! |---|---|---|
+//! | joints | `joint("pivot")?` | `qpos()[joint.qpos]`, `qvel()[joint.dof]` |
+//! | bodies | `body("arm")?` | `body_position`, `body_orientation`, `body_velocity`, `external_force` |
+//! | sites | `site("bulb")?` | `site_position`, `site_orientation` |
+//! | sensors | `sensor("turning")?` | `sensor_values` |
+//! | tendons | `tendon("cable")?` | `tendon_length`, `tendon_velocity`; `add_tendon_tension` pulls |
+//! | contacts | `geom("lamp")?` | `touch`, `contact_force`, `contacts` |
+//! | keyframes | `keyframe("leaning")?` | `set_keyframe` starts there |
+//!
+//! Positions and velocities of joints are those of now. What is derived of them is as the last step found it, before it moved
+//! on; `forward()` brings it up to date. The tests below read each of them.
 
 use std::error::Error;
 
@@ -17,7 +32,7 @@ pub(crate) const TIME_STEP: f64 = STEPS as f64 * 0.005;
 /// The arm, at first upright and at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Arm {
-    simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// Where the joint stands in positions and velocities, and the actuator in controls.
     position: usize,
     velocity: usize,
@@ -68,5 +83,40 @@ impl Plant for Arm {
     /// An episode in which the engine gives up is thrown away and counted.
     fn fault(&self) -> Option<String> {
         self.fault.as_ref().map(ToString::to_string)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `mechanism.xml` has beside joint and motor, by its names. Keep what you need, and move the look-ups into `Arm::new`.
+    #[test]
+    fn everything_of_the_model_can_be_read() -> Result<(), Box<dyn Error + Send + Sync>> {
+        let mut simulation = Arm::new()?.simulation;
+        let (leaning, arm, bulb) = (simulation.keyframe("leaning")?, simulation.body("arm")?, simulation.site("bulb")?);
+        let (turning, cable) = (simulation.sensor("turning")?, simulation.tendon("cable")?);
+        let (lamp, table) = (simulation.geom("lamp")?, simulation.geom("table")?);
+
+        simulation.set_keyframe(leaning);
+        let (angle, speed) = (1.2_f64, 0.5);
+        simulation.qvel_mut()[0] = speed;
+        simulation.forward()?;
+
+        let near = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-9, "{found}, not {wanted}");
+        let place = simulation.site_position(bulb);
+        near(place[0], 0.45 * angle.sin());
+        near(place[2], 0.15 + 0.45 * angle.cos());
+        near(simulation.body_velocity(arm).angular[1], speed);
+        near(simulation.sensor_values(turning)[1], speed);
+        near(simulation.tendon_length(cable), 0.03 * angle);
+        near(simulation.tendon_velocity(cable), 0.03 * speed);
+
+        // Beyond its stop it would lie on the table.
+        assert!(!simulation.touch(lamp, table));
+        simulation.qpos_mut()[0] = 2.0;
+        simulation.forward()?;
+        assert!(simulation.touch(lamp, table) && simulation.contact_force(lamp, table).contacts == 1);
+        Ok(())
     }
 }

@@ -7,20 +7,12 @@ use crate::check::Checker;
 use crate::error::ExprError;
 use crate::exponents::{Exponents, Quantity};
 use crate::formulas::{Formulas, MOST_STEPS, Value};
-use crate::function::Function;
+use crate::function::{Frame, Function};
 use crate::library::law;
 use crate::reference::FUNCTIONS;
 use crate::scope::Scope;
 use crate::suggest::suggest;
 use crate::syntax::{Node, Path, Tree, short};
-
-/// A call that is being expanded.
-pub(crate) struct Frame {
-    function: Arc<Function>,
-    arguments: Vec<Value>,
-    /// Whether the function is of the library, which knows nothing of a user's names.
-    of_library: bool,
-}
 
 impl Formulas {
     /// Checks what a function says, as far as that does not depend on its arguments: its names, and the functions that it calls. A

@@ -2,9 +2,11 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::error::ExprError;
 use crate::exponents::Exponents;
+use crate::formulas::Value;
 use crate::parser::parse;
 use crate::reference::FUNCTIONS;
 use crate::syntax::{Tree, short};
@@ -162,4 +164,12 @@ impl Function {
     pub(crate) fn part(&self, span: &Range<usize>) -> String {
         short(self.text.get(span.clone()).unwrap_or(&self.text))
     }
+}
+
+/// A call that is being expanded.
+pub(crate) struct Frame {
+    pub(crate) function: Arc<Function>,
+    pub(crate) arguments: Vec<Value>,
+    /// Whether the function is of the library, which knows nothing of a user's names.
+    pub(crate) of_library: bool,
 }

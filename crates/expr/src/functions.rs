@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use hwasp_diff::{Binary, Unary};
 
-use crate::check::{Checker, together};
+use crate::check::Checker;
 use crate::error::ExprError;
 use crate::exponents::Quantity;
 use crate::formulas::{Part, Value};
 use crate::reference::FUNCTIONS;
 use crate::scope::Distribution;
+use crate::shapes::together;
 use crate::syntax::Tree;
 
 /// Functions of pure numbers that are one operation.

@@ -52,6 +52,7 @@ mod parser;
 mod quaternion;
 mod reference;
 mod scope;
+mod shapes;
 mod suggest;
 mod syntax;
 mod units;

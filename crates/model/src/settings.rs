@@ -227,7 +227,8 @@ impl ModelSettings {
     }
 
     fn purpose_fields(&mut self, fields: &mut Fields<'_, '_>) {
-        named_field(fields, "define", &mut self.define, "names for formulas, to be used in others");
+        let about = "names for formulas, to be used in others, and functions, `\"soft(x)\" = \"x / (1 + abs(x))\"`";
+        named_field(fields, "define", &mut self.define, about);
         named_field(fields, "random", &mut self.random, "quantities that are drawn when an episode starts");
         list_field(fields, "observe", &mut self.observe, "what the controller sees");
         named_field(fields, "reward", &mut self.reward, "terms of the reward of a step, by name");

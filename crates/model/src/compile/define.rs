@@ -120,13 +120,20 @@ impl Compiler<'_, '_> {
     }
 
     fn define(&mut self, definition: &Definition<'_>) -> Result<(), ExprError> {
+        let remembered = self.names.memory.len();
         let mut scope = InPlace { names: &mut self.names, place: Place::Define, width: 1 };
         if let Some(function) = &definition.function {
             self.formulas.check(function, &mut scope)?;
             self.names.functions.push(Arc::clone(function));
-        } else {
-            let value = self.formulas.read(definition.text, &mut scope)?;
-            self.names.own.push(OwnName { name: definition.key.to_owned(), value });
+            return Ok(());
+        }
+        match self.formulas.read(definition.text, &mut scope) {
+            Ok(value) => self.names.own.push(OwnName { name: definition.key.to_owned(), value }),
+            Err(error) => {
+                // What it wanted to be remembered, it will want again.
+                self.names.memory.truncate(remembered);
+                return Err(error);
+            }
         }
         Ok(())
     }

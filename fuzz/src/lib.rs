@@ -1,6 +1,9 @@
 //! What is done with bytes of strangers. The fuzz targets call it, and `crates/runs/tests/fuzz_corpus.rs`, which includes
 //! this file, replays all inputs that were kept.
 
+mod formula;
+mod robot;
+
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
 
@@ -78,6 +81,20 @@ pub fn experiment(bytes: &[u8]) {
             assert_eq!(read(&written).expect("what was written resolves"), experiment, "{written}");
         }
         Err(faults) => assert!(!faults.to_string().is_empty()),
+    }
+}
+
+/// A formula.
+pub fn formula(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        formula::formula(text);
+    }
+}
+
+/// An experiment of a robot of one's own, with its model.
+pub fn robot(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        robot::robot(text, &CATALOGUE);
     }
 }
 

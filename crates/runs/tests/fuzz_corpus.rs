@@ -49,3 +49,13 @@ fn policies() {
 fn metrics() {
     replay("metrics", fuzz::metrics);
 }
+
+#[test]
+fn formulas() {
+    replay("formula", fuzz::formula);
+}
+
+#[test]
+fn robots() {
+    replay("robot", fuzz::robot);
+}

@@ -187,6 +187,17 @@ fn curricula_by_progress() {
     assert!((at(text, None).1 - (speed - 1.0)).abs() < 1e-12);
 }
 
+/// A draw has as many components as its arguments; where they have one, it is the same for all that it goes with.
+#[test]
+fn noise_is_for_each_component_of_what_is_drawn() {
+    let text = "observe = [\"normal(qpos, 1)\", \"qpos + normal(0, 1)\", \"normal(qpos, progress)\"]\n[task.start]\n\
+                \"qpos\" = \"[0, 0]\"\n";
+    let (seen, _) = at(text, Some(0.0));
+    let place = [seen[4], seen[5]];
+    assert!(((seen[0] - place[0]) - (seen[1] - place[1])).abs() > 1e-6, "{seen:?}");
+    assert!(((seen[2] - place[0]) - (seen[3] - place[1])).abs() < 1e-12, "{seen:?}");
+}
+
 /// A model that cannot be made as training begins is told before it does.
 #[test]
 fn the_beginning_is_checked() {

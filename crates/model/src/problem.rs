@@ -28,8 +28,12 @@ impl Problem for ModelProblem {
         vec![
             Preset::new("balanced-arm", include_str!("../../../experiments/balanced-arm.toml"))
                 .with_files(&[("robots/arm.xml", include_str!("../../../experiments/robots/arm.xml"))]),
+            Preset::new("five-bar", include_str!("../../../experiments/five-bar.toml"))
+                .with_files(&[("robots/five_bar.xml", include_str!("../../../experiments/robots/five_bar.xml"))]),
             Preset::new("hopper", include_str!("../../../experiments/hopper.toml"))
                 .with_files(&[("robots/hopper.xml", include_str!("../../../experiments/robots/hopper.xml"))]),
+            Preset::new("tendon-gripper", include_str!("../../../experiments/tendon-gripper.toml"))
+                .with_files(&[("robots/gripper.xml", include_str!("../../../experiments/robots/gripper.xml"))]),
         ]
     }
 

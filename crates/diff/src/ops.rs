@@ -75,23 +75,24 @@ impl Unary {
     }
 
     /// `g` times the derivative at `a`, where the value is `v`. Being a plain product it serves both directions: a
-    /// cotangent is pulled back with it and a tangent pushed forward.
+    /// cotangent is pulled back with it and a tangent pushed forward. A `g` of zero gives zero, whatever the derivative is:
+    /// what nobody reads may be no number.
     #[inline(always)]
     pub(crate) fn pull<F: Float>(self, g: F, a: F, v: F) -> F {
         match self {
             Self::Neg => -g,
-            Self::Exp => g * v,
-            Self::Ln => g / a,
-            Self::Sqrt => g * F::from_f64(0.5) / v,
-            Self::Sin => g * a.cos(),
-            Self::Cos => -g * a.sin(),
-            Self::Tanh => g * (F::ONE - v * v),
+            Self::Exp => unread(g, g * v),
+            Self::Ln => unread(g, g / a),
+            Self::Sqrt => unread(g, g * F::from_f64(0.5) / v),
+            Self::Sin => unread(g, g * a.cos()),
+            Self::Cos => unread(g, -g * a.sin()),
+            Self::Tanh => unread(g, g * (F::ONE - v * v)),
             Self::Abs => {
                 let signed = if a < F::ZERO { -g } else { g };
                 if a == F::ZERO { F::ZERO } else { signed }
             }
-            Self::Sigmoid => g * (v * (F::ONE - v)),
-            Self::Atan => g / (F::ONE + a * a),
+            Self::Sigmoid => unread(g, g * (v * (F::ONE - v))),
+            Self::Atan => unread(g, g / (F::ONE + a * a)),
         }
     }
 }
@@ -118,8 +119,8 @@ impl Binary {
     pub(crate) fn pull_a<F: Float>(self, g: F, a: F, b: F, _v: F) -> F {
         match self {
             Self::Add | Self::Sub => g,
-            Self::Mul => g * b,
-            Self::Div => g / b,
+            Self::Mul => unread(g, g * b),
+            Self::Div => unread(g, g / b),
             Self::Min => select(b < a, F::ZERO, g),
             Self::Max => select(b > a, F::ZERO, g),
             Self::Less | Self::Gate => F::ZERO,
@@ -132,14 +133,20 @@ impl Binary {
         match self {
             Self::Add => g,
             Self::Sub => -g,
-            Self::Mul => g * a,
-            Self::Div => -(g * v / b),
+            Self::Mul => unread(g, g * a),
+            Self::Div => unread(g, -(g * v / b)),
             Self::Min => select(b < a, g, F::ZERO),
             Self::Max => select(b > a, g, F::ZERO),
             Self::Less => F::ZERO,
             Self::Gate => select(a == F::ZERO, F::ZERO, g),
         }
     }
+}
+
+/// A product with `g`, whose other factor may be no number where `g` is zero.
+#[inline(always)]
+fn unread<F: Float>(g: F, product: F) -> F {
+    select(g == F::ZERO, g, product)
 }
 
 #[inline(always)]

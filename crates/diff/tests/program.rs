@@ -361,3 +361,35 @@ fn gradcheck_names_what_is_wrong() {
     let error = gradcheck(&root, &[], &[0.0], &GradCheckSettings::default()).unwrap_err();
     assert!(matches!(error, GradCheckError::NotFinite { .. }), "{error}");
 }
+
+/// A branch that is not taken, and a root, power or logarithm of 0 that counts nothing, gave gradients that were no numbers: zero
+/// times an infinite derivative.
+#[test]
+fn what_counts_nothing_has_no_gradient() {
+    let program = Program::trace(&["u"], &["x"], |u, c| {
+        let (u, x) = (u[0], c[0]);
+        let above = Var::constant(0.0).less(x);
+        let safe = |value| above.gate(value);
+        vec![
+            ("quotient".into(), safe(u / x * x.exp()) + u * x),
+            ("root".into(), safe(x.sqrt() * u)),
+            ("logarithm".into(), safe((x.ln() * 1.5).exp() / x) + x),
+            // x^1.5, whose derivative at 0 is 0.
+            ("power".into(), (x.ln() * 1.5).exp() * u),
+            ("of a negative".into(), safe((x - 1.0).sqrt().sin() * u)),
+        ]
+    });
+    let (mut tape, mut out) = (program.tape::<f64>(1), [0.0; 5]);
+    program.bind(&[2.0], &mut tape);
+    program.forward(&[0.0], 1, 1, &mut tape, &mut out, 1);
+    assert_eq!(out, [0.0; 5]);
+    let mut pulled = [f64::NAN];
+    program.vjp(&[0.0], 1, 1, &[1.0; 5], 1, &mut tape, &mut pulled, 1);
+    // Of u·x the 2, of x itself the 1.
+    assert_eq!(pulled, [3.0]);
+    program.bind_tangent(&[0.0], &mut tape);
+    let mut pushed = [f64::NAN; 5];
+    program.jvp(&[0.0], &[1.0], 1, 1, &mut tape, &mut pushed, 1);
+    assert_eq!(pushed[..3], [2.0, 0.0, 1.0]);
+    assert_eq!(pushed[4], 0.0);
+}

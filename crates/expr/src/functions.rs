@@ -9,7 +9,6 @@ use crate::error::ExprError;
 use crate::exponents::Quantity;
 use crate::formulas::{Part, Value};
 use crate::reference::FUNCTIONS;
-use crate::scope::Distribution;
 use crate::shapes::together;
 use crate::syntax::Tree;
 
@@ -225,39 +224,6 @@ impl Checker<'_> {
         Ok(Value { parts: parts.collect(), quantity })
     }
 
-    /// A draw for each component of what the formula is for.
-    fn draw(&mut self, name: &str, trees: &[Tree], span: &Range<usize>) -> Result<Value, ExprError> {
-        let (a, b) = (self.value(&trees[0])?, self.value(&trees[1])?);
-        let quantity = self.alike(&a, &b, name, span)?;
-        let count = together(&[&a, &b], span)?.max(self.scope.width());
-        let from = if name == "normal" { Distribution::Normal } else { Distribution::Uniform };
-        let drawn = self.scope.draw(self.formulas, from, count);
-        let parts = drawn.map_err(|why| ExprError::new(span.clone(), why))?;
-        let drawn = Value { parts, quantity: Quantity::Number };
-        let result = match name {
-            "normal" => {
-                let off = Value { parts: self.both(Binary::Mul, &b, &drawn, span)?, quantity };
-                self.both(Binary::Add, &a, &off, span)?
-            }
-            "uniform" => self.between(&a, &b, &drawn, span)?,
-            _ => {
-                self.pure(&a, &trees[0].span, "a limit of log_uniform")?;
-                let [low, high] =
-                    [&a, &b].map(|v| Value { parts: self.each(Unary::Ln, &v.parts), quantity: Quantity::Number });
-                let logarithm = self.between(&low, &high, &drawn, span)?;
-                self.each(Unary::Exp, &logarithm)
-            }
-        };
-        Ok(Value { parts: result, quantity })
-    }
-
-    /// a + (b - a)·u.
-    fn between(&mut self, a: &Value, b: &Value, u: &Value, span: &Range<usize>) -> Result<Vec<Part>, ExprError> {
-        let width = Value { parts: self.both(Binary::Sub, b, a, span)?, quantity: Quantity::Number };
-        let off = Value { parts: self.both(Binary::Mul, &width, u, span)?, quantity: Quantity::Number };
-        self.both(Binary::Add, a, &off, span)
-    }
-
     fn remembered(&mut self, value: &Value, span: &Range<usize>) -> Result<Value, ExprError> {
         let parts = self.scope.previous(self.formulas, value).map_err(|why| ExprError::new(span.clone(), why))?;
         Ok(Value { parts, quantity: value.quantity })
@@ -275,7 +241,7 @@ pub(crate) fn exactly(count: usize, arguments: &[Value], at: usize, trees: &[Tre
 }
 
 /// Component `i`; a scalar is the same everywhere.
-fn at(value: &Value, i: usize) -> Part {
+pub(crate) fn at(value: &Value, i: usize) -> Part {
     value.parts[if value.parts.len() == 1 { 0 } else { i }]
 }
 

@@ -40,6 +40,7 @@
 #![forbid(unsafe_code)]
 
 mod check;
+mod draws;
 mod error;
 mod expand;
 mod exponents;

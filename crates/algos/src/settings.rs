@@ -224,8 +224,8 @@ impl ArsVariant {
 pub struct ArsSettings {
     /// The version.
     pub variant: ArsVariant,
-    /// Whether the search is around a training, where there is no input of a controller to filter.
-    pub around_training: bool,
+    /// Whether the search is around a training, where there is no input of a controller to filter; not any more once that is judged.
+    around_training: bool,
     /// Of the search itself.
     pub config: ArsConfig,
 }
@@ -261,6 +261,8 @@ impl Settings for ArsSettings {
         if fields.sound(&["variant", "directions", "top"]) {
             self.check(fields);
         }
+        // Once it is judged, settings that say the same are the same.
+        self.around_training = false;
     }
 }
 

@@ -260,3 +260,14 @@ proptest! {
         }
     }
 }
+
+/// Whether the search is around a training counted, so that settings that say the same were not the same.
+#[test]
+fn settings_of_a_search_are_the_same_for_either_method() {
+    let with = |method| {
+        let set = [("ars.variant", "v1-t"), ("ars.directions", "8"), ("controller.normalize_observations", "false")];
+        let layers = set.iter().fold(load("reach"), |layers, (key, value)| layers.with_override(key, value));
+        resolve(layers, Some(method)).unwrap().ars
+    };
+    assert_eq!(with("ars"), with("ars-rl"));
+}

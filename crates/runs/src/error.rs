@@ -20,6 +20,15 @@ pub enum RunError {
         /// The folder.
         path: PathBuf,
     },
+    /// A file that the experiment names would lie where a run has one of its own.
+    #[error(
+        "the experiment names the file {file}, and a run folder, which keeps such files, has something of its own there; give the \
+         file or its folder another name"
+    )]
+    Taken {
+        /// Its path from the experiment's folder.
+        file: String,
+    },
     /// It is not a run folder.
     #[error("{path} is not a run folder: it has no {file}")]
     NotARun {

@@ -15,5 +15,24 @@ pub(crate) const FAULTS: &str = "faults";
 /// Written last: a folder that has it is finished.
 pub const SUMMARY: &str = "summary.json";
 
+/// What lies in a run folder by these names is the run's own, in lower case.
+pub(crate) const OWN: [&str; 15] = [
+    "experiment.toml",
+    PROVENANCE,
+    METRICS,
+    "metrics.damaged",
+    DESIGN,
+    POLICY,
+    CHECKPOINTS,
+    FAULTS,
+    SUMMARY,
+    "train.log",
+    "curves.svg",
+    "report.html",
+    "tensorboard",
+    "export",
+    "play",
+];
+
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.
 pub const LARGEST_SUMMARY: u64 = 16 << 20;

@@ -57,6 +57,7 @@ impl<'r> Reader<'r> {
         if errors.is_full() {
             return errors.count_one();
         }
+        let hint = hint.filter(|hint| !hint.is_empty());
         let finding = Finding { key: key.to_owned(), message, hint };
         let missing = Origin::default();
         let at = origin.unwrap_or(&missing);

@@ -16,7 +16,7 @@ use super::{Provenance, SavedRun};
 use crate::checkpoint::experiment_hash;
 use crate::error::{RunError, encode, io_error};
 use crate::files::{self, Disk, Files, json, read_limited, with_file_above};
-use crate::layout::{DESIGN, METRICS, POLICY, PROVENANCE, SUMMARY};
+use crate::layout::{DESIGN, METRICS, OWN, POLICY, PROVENANCE, SUMMARY};
 use crate::policy_file::write_policy;
 use crate::store::{CheckpointStore, Found};
 use crate::summary::Summary;
@@ -94,8 +94,21 @@ impl From<RunFolder> for Resumed {
 }
 
 impl RunFolder {
+    /// Whether a run can keep the files that an experiment names beside its own.
+    ///
+    /// # Errors
+    /// [`RunError::Taken`] of a file that would lie where a run has one of its own.
+    pub fn check_names(spec: &Experiment) -> Result<(), RunError> {
+        let taken = |path: &&String| {
+            let first = path.split('/').next().unwrap_or_default().to_lowercase();
+            OWN.contains(&first.as_str()) || first.starts_with('.')
+        };
+        spec.files().keys().find(taken).map_or(Ok(()), |path| Err(RunError::Taken { file: path.clone() }))
+    }
+
     /// Creates the folder and writes what is known before training. A folder that exists is not touched.
     pub fn create(path: &Path, spec: &Experiment, provenance: &Provenance, keeping: Keeping) -> Result<Self, RunError> {
+        Self::check_names(spec)?;
         if let Some(parent) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
             fs::create_dir_all(parent).map_err(|source| io_error("create", path, with_file_above(parent, source)))?;
         }

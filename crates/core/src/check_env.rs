@@ -198,6 +198,12 @@ impl Check<'_> {
         let read: Vec<f64> = self.reads.iter().map(|&c| command[c]).collect();
         self.law.effort(design, &read, &state, &mut effort);
         let result = env.step(&effort, sent);
+        if result.end == Some(End::Faulted) {
+            return Err(EnvFault::Faulted {
+                step,
+                why: env.fault().unwrap_or_else(|| "it does not say how".to_owned()),
+            });
+        }
         Snapshot::take(env, step, result.reward, result.end)
     }
 

@@ -55,7 +55,7 @@ mod world;
 
 pub use built::{Built, StandIn};
 pub use error::{AnyError, FaultsTold};
-pub use mechanism::{Mechanism, ModelFile, ModelFormat};
+pub use mechanism::{Changed, Mechanism, ModelFile, ModelFormat};
 pub use problem::{AnyProblem, Preset, Problem};
 pub use words::{Role, Words};
 pub use world::World;

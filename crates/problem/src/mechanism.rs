@@ -23,6 +23,21 @@ pub struct ModelFile {
     pub contents: Vec<u8>,
 }
 
+/// A number of a mechanism that is another one with another design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Changed {
+    /// What it is.
+    pub name: String,
+    /// The symbol of its SI unit; empty for pure numbers.
+    pub unit: String,
+    /// With the one design.
+    pub before: f64,
+    /// With the other.
+    pub after: f64,
+    /// Whether it follows of numbers that the design sets, and is not set itself.
+    pub follows: bool,
+}
+
 /// A mechanism as it is built: models, parts, shapes and statics for the numbers of a design.
 pub trait Mechanism: Any + Debug + Send + Sync {
     /// For those who know what it is: a hand has pages and printed parts of its own.
@@ -40,6 +55,14 @@ pub trait Mechanism: Any + Debug + Send + Sync {
     fn write(&self, format: ModelFormat, design: &[f64]) -> Result<Vec<ModelFile>, AnyError> {
         let _ = design;
         Err(format!("this mechanism is not written as {format:?}").into())
+    }
+
+    /// The numbers that differ between two designs (SI): those that the design sets, then those that follow.
+    ///
+    /// # Errors
+    /// Where the mechanism cannot have one of the designs.
+    fn changes(&self, _before: &[f64], _after: &[f64]) -> Result<Vec<Changed>, AnyError> {
+        Ok(Vec::new())
     }
 
     /// The manufacturing errors to reckon with where nobody says others: what is off, by its name or the last word of it, and by

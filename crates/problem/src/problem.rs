@@ -1,6 +1,6 @@
 //! The trait that every problem implements, and the same with its settings' type erased.
 
-use hwasp_settings::{AnySettings, Settings};
+use hwasp_settings::{AnySettings, Folder, Settings};
 
 use crate::built::Built;
 use crate::error::AnyError;
@@ -51,6 +51,15 @@ pub trait Problem: Send + Sync + 'static {
     fn presets(&self) -> Vec<Preset> {
         Vec::new()
     }
+
+    /// An experiment to begin with for a file of one's own, such as a robot's model: the text of one called `name` that trains
+    /// as it is. None where the problem is not about files.
+    ///
+    /// # Errors
+    /// Where the file is none that it could be about, with a way out.
+    fn begin(&self, _folder: &Folder, _file: &str, _name: &str) -> Option<Result<String, AnyError>> {
+        None
+    }
 }
 
 /// A [`Problem`] as a catalogue keeps it.
@@ -66,6 +75,8 @@ pub trait AnyProblem: Send + Sync {
     fn build(&self, settings: &dyn AnySettings) -> Result<Built, AnyError>;
     /// See [`Problem::presets`].
     fn presets(&self) -> Vec<Preset>;
+    /// See [`Problem::begin`].
+    fn begin(&self, folder: &Folder, file: &str, name: &str) -> Option<Result<String, AnyError>>;
 }
 
 impl<P: Problem> AnyProblem for P {
@@ -84,5 +95,9 @@ impl<P: Problem> AnyProblem for P {
 
     fn presets(&self) -> Vec<Preset> {
         Problem::presets(self)
+    }
+
+    fn begin(&self, folder: &Folder, file: &str, name: &str) -> Option<Result<String, AnyError>> {
+        Problem::begin(self, folder, file, name)
     }
 }

@@ -1,6 +1,6 @@
 //! What a problem and its ports mean, in a few words for exports and reports.
 
-/// On which side of controller and law a quantity is.
+/// What a name is of: a port on one side of controller and law, a parameter or a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// What the controller sees.
@@ -11,6 +11,10 @@ pub enum Role {
     Command,
     /// What the mechanism does to the world.
     Effort,
+    /// A group of design parameters: what it does.
+    Design,
+    /// A term of the reward: how it is computed.
+    Reward,
 }
 
 /// What a problem and its ports mean.
@@ -18,7 +22,7 @@ pub enum Role {
 pub struct Words {
     /// Body, purpose, and what of the body is designed, in one to three sentences; empty where nobody has written them.
     pub about: String,
-    /// Ports by role and name, with their meaning. Units and limits stand beside them wherever they are shown.
+    /// Ports, design groups and terms of the reward by role and name, with their meaning. Units and limits stand beside them wherever they are shown.
     pub ports: Vec<(Role, String, String)>,
 }
 

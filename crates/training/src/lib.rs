@@ -22,6 +22,7 @@ mod running;
 mod search;
 pub mod stats;
 mod train;
+mod trial;
 mod worker;
 
 pub use assemble::{AssembleError, Assembly, Piece};
@@ -37,4 +38,5 @@ pub use metrics::MetricsRow;
 pub use observer::{Event, FailedIteration, Observer, ObserverError};
 pub use paired::{Change, Reference};
 pub use train::{STILL, Trained, beginning, moved, params_at, repeat, train, train_by, train_from};
+pub use trial::Trial;
 pub use worker::{LocalCollector, Worker};

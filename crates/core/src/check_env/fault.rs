@@ -86,6 +86,14 @@ pub enum EnvFault {
         /// Steps since the reset.
         step: usize,
     },
+    /// Physics that failed, or formulas that gave no number.
+    #[error("step {step}: the physics failed: {why}")]
+    Faulted {
+        /// Steps since the reset.
+        step: usize,
+        /// What the environment says of it.
+        why: String,
+    },
     /// Two episodes that should be the same are not.
     #[error("step {step}: {cause}, but {kind}[{index}] is {first} once and {second} another time")]
     Differs {

@@ -92,9 +92,20 @@ impl Anatomy {
             Drive::Joint(_, name) | Drive::Tendon(_, name) | Drive::Site(_, name) => name,
             Drive::Other(_) => None,
         };
-        let actuators = inventory.actuators.into_iter().map(|actuator| Actuator {
-            // Gymnasium's have no names: they go by what they drive.
-            name: actuator.name.or_else(|| driven(actuator.drives)).unwrap_or_default(),
+        // Gymnasium's have no names: they go by what they drive, and by their number where that is no name of one alone.
+        let called: Vec<(bool, String)> = inventory
+            .actuators
+            .iter()
+            .map(|actuator| {
+                let own = actuator.name.clone();
+                (own.is_some(), own.or_else(|| driven(actuator.drives.clone())).unwrap_or_default())
+            })
+            .collect();
+        let clear = |(named, name): &(bool, String)| {
+            *named || !name.is_empty() && called.iter().filter(|(_, other)| other == name).count() == 1
+        };
+        let actuators = inventory.actuators.into_iter().zip(&called).enumerate().map(|(i, (actuator, own))| Actuator {
+            name: if clear(own) { own.1.clone() } else { format!("actuator_{i}") },
             limits: actuator.control_range,
             activation: actuator.activations.clone().next(),
         });
@@ -117,8 +128,8 @@ impl Anatomy {
     }
 }
 
-/// What a sensor measures, in the terms of formulas.
-fn measured(of: engine::Quantity) -> Quantity {
+/// What a sensor or field measures, in the terms of formulas.
+pub(crate) fn measured(of: engine::Quantity) -> Quantity {
     match of {
         engine::Quantity::Number => Quantity::Number,
         other => hwasp_expr::parse_unit(&other.unit().replace('²', "^2").replace('³', "^3"))

@@ -105,6 +105,11 @@ impl Body {
         Self { sim, ids, blocks, pushed: Vec::new() }
     }
 
+    /// What is simulated.
+    pub(crate) fn simulation(&self) -> &Simulation {
+        &self.sim
+    }
+
     /// Takes another model of the same text.
     pub(crate) fn exchange(&mut self, sim: Simulation) {
         self.sim = sim;

@@ -68,8 +68,15 @@ impl Robot {
                 return None;
             }
         };
-        if let Err(error) = additions.add(&mut spec) {
-            tell_at(section, &["motors"], &(0..0), &error.to_string(), None);
+        if let Err((key, error)) = additions.add(&mut spec) {
+            let hint = match key[..] {
+                ["base"] => {
+                    "base = \"free\" is for a model whose base nothing holds or frees yet, as in URDF: leave it out"
+                }
+                ["floor"] => "floor = true is for a model without one, as in URDF: leave it out",
+                _ => "a motor is for a hinge or slide without one, by the joint's name",
+            };
+            tell_at(section, &key, &(0..0), &error.to_string(), Some(hint.to_owned()));
             return None;
         }
         let simulation = match spec.compile() {
@@ -123,6 +130,18 @@ impl Compiler<'_, '_> {
         };
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
         let law_reads = self.commands_of(&law);
+        let watched: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
+        let purpose: Vec<Part> = terms.iter().map(|(_, part)| *part).chain(ends).chain(success).collect();
+        let around: Vec<Part> =
+            forces.iter().flat_map(|(parts, _)| parts).chain(random.iter().flatten()).copied().collect();
+        let places = [
+            (&law[..], "the law"),
+            (start.as_ref().map_or(&[][..], |(parts, _)| parts), "the start"),
+            (&watched, "the observation"),
+            (&purpose, "reward and end"),
+            (&around, "draws and forces"),
+        ];
+        let uses = self.uses(uniforms.len(), shaping.as_ref(), &places);
         let (law, states) = self.traced_law(&space, &law)?;
         let shaping = shaping.map(|found| Shaping {
             formula: formula(self, None, numbered(&found.parts)),
@@ -144,6 +163,8 @@ impl Compiler<'_, '_> {
             let columns = (0..parts.len()).filter_map(|i| place(Column::Random(i))).collect();
             (formula(self, Some(Stage::Random), numbered(&parts)), columns)
         });
+        let drawn_at = random.iter().flat_map(|(_, columns): &(Formula, Vec<usize>)| columns);
+        let random_names = drawn_at.map(|&at| self.names.columns.names()[at].clone()).collect();
         let kind_names = settings.kinds.iter().map(|(name, _)| Arc::from(name.as_str()));
         let other = if settings.kinds.is_empty() { "all" } else { "other" };
         let mut env = self.env(&observed, &law);
@@ -163,6 +184,7 @@ impl Compiler<'_, '_> {
             additions,
             columns: self.names.columns.all().to_vec(),
             states,
+            random_names,
             random,
             shaping,
             start: start.map(|(parts, targets)| (formula(self, Some(Stage::Start), numbered(&parts)), targets)),
@@ -185,14 +207,20 @@ impl Compiler<'_, '_> {
             frame_skip: settings.frame_skip,
             fresh: settings.readings == Readings::Fresh && self.names.columns.all().iter().any(derived),
             memory: memory_columns,
+            uses,
             simulation: Mutex::new(simulation),
         };
         robot.discard_visual();
+        self.at_corners(robot)
+    }
+
+    /// The robot, where its model can be made at the corners of the design.
+    fn at_corners(&mut self, robot: Robot) -> Option<Robot> {
         match check_corners(&robot) {
             Ok(()) => Some(robot),
             Err(message) => {
                 let hint = "narrow the limits, or mend the formulas that set fields of the model";
-                let key = if settings.design.is_empty() { "set" } else { "design" };
+                let key = if self.settings.design.is_empty() { "set" } else { "design" };
                 self.refuse(&[key], message, Some(hint.into()));
                 None
             }

@@ -75,7 +75,8 @@ pub(crate) fn check_corners(robot: &Robot) -> Result<(), String> {
 pub(crate) fn columns(robot: &Robot, design: &[f64], luck: f64, progress: f64) -> Vec<f64> {
     let mut values = vec![0.0; robot.columns.len()];
     let random = robot.random.iter().flat_map(|(formula, _)| &formula.draws);
-    for &(from, column) in random.chain(robot.shaping.iter().flat_map(|shaping| &shaping.formula.draws)) {
+    let start = robot.start.iter().flat_map(|(formula, _)| &formula.draws);
+    for &(from, column) in random.chain(robot.shaping.iter().flat_map(|shaping| &shaping.formula.draws)).chain(start) {
         values[column] = match from {
             Distribution::Uniform => (0.5 + 0.5 * luck).min(1.0 - f64::EPSILON),
             Distribution::Normal => WIDE * luck,

@@ -144,16 +144,23 @@ impl ModelEnvironment {
     }
 
     /// The quantities of the episode.
-    fn draw_episode(&mut self) {
+    fn draw_episode(&mut self) -> Result<(), String> {
         let robot = Arc::clone(&self.robot);
-        let (Some((formula, columns)), Some(_)) = (&robot.random, &self.random) else { return };
+        let (Some((formula, columns)), Some(_)) = (&robot.random, &self.random) else { return Ok(()) };
         self.draw(&formula.draws);
         if let Some(ready) = &mut self.random {
             ready.run(formula, &self.values);
-            for (&column, &value) in columns.iter().zip(&ready.out) {
+            for (i, (&column, &value)) in columns.iter().zip(&ready.out).enumerate() {
+                if !value.is_finite() {
+                    let name = robot.random_names.get(i).map_or("a quantity", String::as_str);
+                    return Err(format!(
+                        "`{name}` of [task.random] is {value}: see the limits that it is drawn between"
+                    ));
+                }
                 self.values[column] = value;
             }
         }
+        Ok(())
     }
 
     /// Compiles the model anew where design or chance have changed it.
@@ -208,7 +215,7 @@ impl ModelEnvironment {
             }
         }
         self.fill_own();
-        self.draw_episode();
+        self.draw_episode()?;
         self.shape()?;
         self.place()?;
         let robot = Arc::clone(&self.robot);

@@ -28,7 +28,9 @@
 #![forbid(unsafe_code)]
 
 mod anatomy;
+mod begin;
 mod body;
+mod changes;
 mod columns;
 mod compile;
 mod corners;
@@ -46,5 +48,5 @@ mod texts;
 
 pub use parameter::{Amount, Command, Limits, Parameter};
 pub use problem::ModelProblem;
-pub use reference::reference;
+pub use reference::{reference, settable};
 pub use settings::{Base, ModelSettings, Readings};

@@ -243,7 +243,7 @@ impl Names {
         }
         if columns.is_empty() {
             let message = format!("`{path}` is empty: none of them has one");
-            return Err(NameError::because(2, message, "see `hwasp check` for what the model has"));
+            return Err(NameError::because(2, message, "leave it out"));
         }
         Ok((Found::Columns(columns), quantity.unwrap_or(Quantity::Unknown), 3))
     }
@@ -333,14 +333,19 @@ fn chosen(path: &Path, at: usize, elements: &[String]) -> Result<Vec<usize>, Nam
     let kind = path.word(at - 1).unwrap_or_default();
     let named = || elements.iter().filter(|name| !name.is_empty()).cloned();
     if elements.is_empty() {
-        return Err(NameError::because(0, format!("the model has no {kind}"), "see `hwasp check` for what it has"));
+        let message = format!("the model has no {kind}");
+        return Err(NameError::because(0, message, format!("leave it out, or add a {kind} to the model's file")));
     }
     if let Some(index) = path.index(at) {
         let last = elements.len() - 1;
         let message = || format!("there is no {kind} #{index}: they are counted from 0 to {last}");
-        return (index <= last)
-            .then(|| vec![index])
-            .ok_or_else(|| NameError::because(at, message(), "see `hwasp check`"));
+        let known: Vec<String> = named().collect();
+        let hint = if known.is_empty() {
+            format!("none of them has a name: {kind}.#0 is the first")
+        } else {
+            format!("by name there are {}", hwasp_settings::listed(known.iter().map(String::as_str)))
+        };
+        return (index <= last).then(|| vec![index]).ok_or_else(|| NameError::because(at, message(), hint));
     }
     match path.word(at) {
         None => Err(NameError::because(

@@ -217,7 +217,15 @@ impl Command {
         let limits = Limits::read(section, &inner("limits"), &limits.node)?;
         let gear = match table.get("gear") {
             None => 1.0,
-            Some(entry) => section.checked_number_of(&inner("gear"), &entry.node, &(-1e6..=1e6))?,
+            Some(entry) => {
+                let gear = section.checked_number_of(&inner("gear"), &entry.node, &(-1e6..=1e6))?;
+                if gear == 0.0 {
+                    let hint = "the gear is the torque or force at a command of 1; leave the motor out for none";
+                    section.wrong(&inner("gear"), &entry.node, "lets the motor do nothing", Some(hint.into()));
+                    return None;
+                }
+                gear
+            }
         };
         Some(Self { name: name.to_owned(), limits, gear })
     }

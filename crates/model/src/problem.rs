@@ -3,7 +3,10 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use hwasp_problem::{AnyError, Built, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, World};
+use hwasp_problem::{
+    AnyError, Built, Changed, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, Role, Words, World,
+};
+use hwasp_settings::Folder;
 
 use crate::environment::ModelEnvironments;
 use crate::robot::Robot;
@@ -37,6 +40,10 @@ impl Problem for ModelProblem {
         ]
     }
 
+    fn begin(&self, folder: &Folder, file: &str, name: &str) -> Option<Result<String, AnyError>> {
+        Some(crate::begin::begin(folder, file, name))
+    }
+
     fn build(&self, settings: &ModelSettings) -> Result<Built, AnyError> {
         let Some(robot) = &settings.robot else { return Err(FaultsTold.into()) };
         let world = |own_law| {
@@ -49,34 +56,61 @@ impl Problem for ModelProblem {
         built.mechanism = Some(Arc::new(Model(Arc::clone(robot))));
         built.files = Arc::clone(&settings.files);
         built.effort_std = effort_std(robot);
+        built.words = words(settings, robot);
         Ok(built)
     }
+}
+
+/// What the parameters of the design do, and the terms of the reward.
+fn words(settings: &ModelSettings, robot: &Robot) -> Words {
+    let names = robot.law.design().names();
+    let design: Vec<(String, String)> = names.into_iter().zip(robot.uses.iter().cloned()).collect();
+    let ports = |role, of: Vec<(String, String)>| of.into_iter().map(move |(name, meaning)| (role, name, meaning));
+    let ports = ports(Role::Design, design).chain(ports(Role::Reward, settings.reward.clone())).collect();
+    Words { ports, ..Words::default() }
 }
 
 /// The share of what commands can do to an effort that it is explored by, as commands are by a share of their range.
 const EXPLORED: f64 = 0.15;
 
-/// How far the commands move each effort of the law in the middle of the design, at rest, times [`EXPLORED`]; none where they do
-/// not move it.
+/// How far the commands move each effort of the law in the middle of the design, at rest, times [`EXPLORED`]; where they do not
+/// move it, how far the parameters of the design do; none where neither does.
 fn effort_std(robot: &Robot) -> Vec<Option<f64>> {
     let (space, ports) = (robot.law.design(), &robot.env.command);
     let design = space.middle();
     let middle: Vec<f64> = ports.iter().map(|port| 0.5 * (port.lo + port.hi)).collect();
     let state = vec![0.0; robot.states.len()];
-    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; robot.env.effort.len()];
-    let mut effort = vec![0.0; ranges.len()];
+    let count = robot.env.effort.len();
+    let mut effort = vec![0.0; count];
+    let mut widen = |ranges: &mut [[f64; 2]], design: &[f64], command: &[f64]| {
+        robot.law.effort(design, command, &state, &mut effort);
+        for (range, &effort) in ranges.iter_mut().zip(&effort) {
+            *range = [range[0].min(effort), range[1].max(effort)];
+        }
+    };
+    let nowhere = [f64::INFINITY, f64::NEG_INFINITY];
+    let (mut commanded, mut designed) = (vec![nowhere; count], vec![nowhere; count]);
     for (i, port) in ports.iter().enumerate() {
         for end in [port.lo, port.hi] {
             let mut command = middle.clone();
             command[i] = end;
-            robot.law.effort(&design, &command, &state, &mut effort);
-            for (range, &effort) in ranges.iter_mut().zip(&effort) {
-                *range = [range[0].min(effort), range[1].max(effort)];
-            }
+            widen(&mut commanded, &design, &command);
+        }
+    }
+    for i in 0..space.len() {
+        let (low, high) = space.bounds(i);
+        for end in [low, high] {
+            let mut design = design.clone();
+            design[i] = end;
+            widen(&mut designed, &design, &middle);
         }
     }
     let spread = |[low, high]: [f64; 2]| Some(EXPLORED * (high - low)).filter(|std| (1e-6..=1e4).contains(std));
-    ranges.into_iter().map(spread).collect()
+    commanded
+        .into_iter()
+        .zip(designed)
+        .map(|(commanded, designed)| spread(commanded).or_else(|| spread(designed)))
+        .collect()
 }
 
 /// The model as what is built.
@@ -90,6 +124,10 @@ impl Mechanism for Model {
 
     fn formats(&self) -> Vec<ModelFormat> {
         vec![ModelFormat::Mjcf]
+    }
+
+    fn changes(&self, before: &[f64], after: &[f64]) -> Result<Vec<Changed>, AnyError> {
+        crate::changes::changes(&self.0, before, after)
     }
 
     /// The model with the design, and the files that it refers to.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use hwasp_expr::{FUNCTIONS, Quantity, laws};
+use hwasp_mujoco::engine::{Kind, settable_fields};
 
 use crate::names::attributes;
 
@@ -24,6 +25,25 @@ const OTHERS: [(&str, &str); 13] = [
     ("progress", "share of training done, 0 to 1; 1 in evaluations"),
     ("pi", "3.14159…"),
 ];
+
+/// The fields of the model that designs can set, as a table in Markdown.
+pub fn settable() -> String {
+    let mut text = "| field | numbers | measures |\n|---|---|---|\n".to_owned();
+    for field in settable_fields() {
+        let element = if field.kind == Kind::Options { "" } else { ".NAME" };
+        let numbers = match (field.len, field.letters.is_empty()) {
+            (1, _) => "1".to_owned(),
+            (len, true) => format!("{len}: `[0]` to `[{}]`", len - 1),
+            (len, false) => {
+                let letters: Vec<String> = field.letters.chars().map(|letter| format!("`.{letter}`")).collect();
+                format!("{len}: {}", letters.join(", "))
+            }
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| `{}{element}.{}` | {numbers} | {} |", field.kind, field.name, field.units);
+    }
+    text
+}
 
 /// Tables in Markdown: names, functions, laws.
 pub fn reference() -> String {

@@ -85,6 +85,8 @@ pub(crate) struct Robot {
     pub(crate) states: Vec<usize>,
     /// Columns of the law's commands and states: for the law at the rate of the physics.
     pub(crate) random: Option<(Formula, Vec<usize>)>,
+    /// What each component of those quantities is called.
+    pub(crate) random_names: Vec<String>,
     pub(crate) shaping: Option<Shaping>,
     /// Targets in positions and velocities.
     pub(crate) start: Option<(Formula, Vec<Reading>)>,
@@ -105,6 +107,8 @@ pub(crate) struct Robot {
     pub(crate) fresh: bool,
     /// The columns of every memory, in order.
     pub(crate) memory: Vec<usize>,
+    /// What each design parameter does, in words.
+    pub(crate) uses: Vec<String>,
     /// Compiled as the design begins, to be cloned.
     pub(crate) simulation: Mutex<Simulation>,
 }
@@ -122,20 +126,23 @@ impl Additions {
     /// The model with them, in the making.
     pub(crate) fn spec(&self, main: &str, files: &Files) -> Result<Spec, AnyError> {
         let mut spec = Spec::parse(main, files)?;
-        self.add(&mut spec)?;
+        self.add(&mut spec).map_err(|(_, error)| error)?;
         Ok(spec)
     }
 
     /// Adds them to a model.
-    pub(crate) fn add(&self, spec: &mut Spec) -> Result<(), SpecError> {
+    ///
+    /// # Errors
+    /// With the keys of what cannot be added.
+    pub(crate) fn add(&self, spec: &mut Spec) -> Result<(), (Vec<&str>, SpecError)> {
         if self.free_base {
-            spec.free_base()?;
+            spec.free_base().map_err(|error| (vec!["base"], error))?;
         }
         if self.floor {
-            spec.add_floor()?;
+            spec.add_floor().map_err(|error| (vec!["floor"], error))?;
         }
         for (joint, gear, limits) in &self.motors {
-            spec.add_motor(joint, joint, *gear, *limits)?;
+            spec.add_motor(joint, joint, *gear, *limits).map_err(|error| (vec!["motors", joint.as_str()], error))?;
         }
         Ok(())
     }

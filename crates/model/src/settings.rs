@@ -258,18 +258,13 @@ impl ModelSettings {
         let item = (!self.design.is_empty()).then_some(Item::Keys(Keys(keys)));
         let design = &mut self.design;
         let about = "design parameters: `{ shank = { limits = [\"0.3 m\", \"0.7 m\"], initial = \"0.5 m\", sets = [\"geom.shin.size[1] = shank/2\"] } }`";
-        fields.default("required").kind(Kind::Table(Box::new(Kind::Open))).open(
-            "design",
-            about,
-            item,
-            |section, node| {
-                let Value::Table(table) = &node.value else {
-                    return section.wrong("design", node, "is no table", Some("write [task.design.NAME]".into()));
-                };
-                let read = table.iter().map(|(name, entry)| Parameter::read(section, name, entry));
-                *design = read.collect::<Vec<_>>().into_iter().flatten().collect();
-            },
-        );
+        fields.default("none").kind(Kind::Table(Box::new(Kind::Open))).open("design", about, item, |section, node| {
+            let Value::Table(table) = &node.value else {
+                return section.wrong("design", node, "is no table", Some("write [task.design.NAME]".into()));
+            };
+            let read = table.iter().map(|(name, entry)| Parameter::read(section, name, entry));
+            *design = read.collect::<Vec<_>>().into_iter().flatten().collect();
+        });
     }
 
     /// Reads the model's files and compiles all that was said, once every key was read.

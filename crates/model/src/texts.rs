@@ -69,6 +69,20 @@ pub(crate) fn named(section: &Section<'_>, key: &str, node: &Node) -> Option<Nam
             sound = false;
             continue;
         }
+        if let Value::Table(deeper) = &entry.node.value {
+            // `joint.knee = ...` without quotes is a table in a table.
+            let mut whole = name.clone();
+            let mut at = Some(deeper);
+            while let Some((part, below)) = at.and_then(|table| table.iter().next()) {
+                whole = format!("{whole}.{part}");
+                at = if let Value::Table(table) = &below.node.value { Some(table) } else { None };
+            }
+            let message = format!("{} is a table, where a name with its formula belongs", section.path(&inner));
+            let hint = format!("a name with dots stands in quotes: \"{}\" = \"…\"", shorten(&whole, 60));
+            section.fault_at(&entry.key, &inner, message, Some(hint));
+            sound = false;
+            continue;
+        }
         match text(section, &inner, &entry.node) {
             Some(text) => found.push((name.clone(), text)),
             None => sound = false,

@@ -159,3 +159,41 @@ fn a_drawn_field_is_written_in_its_middle() {
         assert!(front.contains("mass=\"3\""), "{draw}: {front}");
     }
 }
+
+/// Definitions in reverse order were read again and again, until there were too many operations, which was told of another key.
+#[test]
+fn definitions_stand_in_any_order() {
+    // Long enough that to read each for each would not end.
+    let long = "0 * joint.slide.pos + ".repeat(20);
+    let define: Vec<String> = (0..400).map(|i| format!("d{i:03} = \"{long}d{:03} + 1\"", i + 1)).collect();
+    let text = format!("observe = [\"d000\"]\n[task.define]\n{}\nd400 = 7\n", define.join("\n"));
+    let mut robot = robot(&text);
+    robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+    assert_eq!(seen(&*robot), [407.0]);
+}
+
+/// What is drawn where the limits are not in order was drawn between them all the same.
+#[test]
+fn draws_that_cannot_be_are_faults() {
+    for (text, said) in [
+        ("uniform(2, 1)", "the lower limit 2 is above the upper one, 1"),
+        ("uniform([0, 2], [1, 1])", "the lower limit 2 is above the upper one, 1"),
+        ("log_uniform(-3, -1)", "the limit -3 has no logarithm"),
+        ("normal(0, -1)", "the standard deviation -1 is negative"),
+    ] {
+        let faults = resolved(&format!("[task.random]\nload = \"{text}\"\n")).unwrap_err();
+        let fault = &faults.faults()[0];
+        assert!(fault.message.contains(said) && fault.line == Some(6), "{fault}");
+    }
+    for text in ["uniform(1, 1 - late)", "log_uniform(-late, 1)", "normal(0, -late)"] {
+        let keys = format!("[task.random]\nlate = \"uniform(0.5, 1)\"\nload = \"{text}\"\n");
+        let mut robot = robot(&keys);
+        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+        assert_eq!(robot.step(&[], &[0.0]).end, Some(End::Faulted), "{text}");
+        assert!(robot.fault().unwrap().starts_with("`load[0]` of [task.random] is NaN"), "{:?}", robot.fault());
+    }
+    let sound = "[task.random]\nlate = \"uniform(0.5, 1)\"\nload = \"uniform(1, 1 + late)\"\n";
+    let mut robot = robot(sound);
+    robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
+    assert_eq!(robot.fault(), None);
+}

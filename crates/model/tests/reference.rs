@@ -5,16 +5,19 @@
 use std::fs;
 use std::path::Path;
 
-/// `HWASP_WRITE_DOCS=1 cargo test -p hwasp-model --test reference` writes it anew.
+/// `HWASP_WRITE_DOCS=1 cargo test -p hwasp-model --test reference` writes both anew.
 #[test]
-fn names_and_functions_are_in_the_document() {
-    const BEGIN: &str = "<!-- names: written by the tests of hwasp-model -->\n";
-    const END: &str = "<!-- end of names -->\n";
+fn names_functions_and_fields_are_in_the_document() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own_robot.md");
     let there = fs::read_to_string(&path).unwrap();
-    let (before, rest) = there.split_once(BEGIN).unwrap();
-    let (_, after) = rest.split_once(END).unwrap();
-    let wanted = format!("{before}{BEGIN}{}{END}{after}", hwasp_model::reference());
+    let mut wanted = there.clone();
+    for (what, text) in [("names", hwasp_model::reference()), ("fields", hwasp_model::settable())] {
+        let begin = format!("<!-- {what}: written by the tests of hwasp-model -->\n");
+        let end = format!("<!-- end of {what} -->\n");
+        let (before, rest) = wanted.split_once(&begin).unwrap();
+        let (_, after) = rest.split_once(&end).unwrap();
+        wanted = format!("{before}{begin}{text}{end}{after}");
+    }
     if std::env::var_os("HWASP_WRITE_DOCS").is_some() {
         fs::write(path, wanted).unwrap();
         return;

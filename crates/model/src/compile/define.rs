@@ -21,6 +21,14 @@ impl Definition<'_> {
     fn name(&self) -> &str {
         self.function.as_ref().map_or(self.key, |function| function.name())
     }
+
+    /// Whether it is what a fault says is not there.
+    fn is_missing(&self, error: &ExprError) -> bool {
+        match &self.function {
+            Some(function) => error.message == format!("there is no function `{}`", function.name()),
+            None => error.message == format!("`{}` is not known", self.key),
+        }
+    }
 }
 
 impl Compiler<'_, '_> {
@@ -35,29 +43,32 @@ impl Compiler<'_, '_> {
                 left.extend(found);
             }
         }
-        loop {
-            let before = left.len();
-            left.retain(|definition| {
-                let defined = self.define(definition).is_ok();
-                if defined {
-                    self.defined.push(definition.key.to_owned());
+        // One that names another waits for it: to read all again for each would never end.
+        let mut tried = vec![false; left.len()];
+        for first in 0..left.len() {
+            let mut waiting = if tried[first] { vec![] } else { vec![first] };
+            while let Some(&at) = waiting.last() {
+                match self.define(&left[at]) {
+                    Ok(()) => self.defined.push(left[at].key.to_owned()),
+                    Err(error) => {
+                        let other = left.iter().position(|other| other.is_missing(&error));
+                        if let Some(other) = other.filter(|other| !tried[*other] && !waiting.contains(other)) {
+                            waiting.push(other);
+                            continue;
+                        }
+                    }
                 }
-                !defined
-            });
-            if left.len() == before || left.is_empty() {
-                break;
+                tried[at] = true;
+                waiting.pop();
             }
         }
+        left.retain(|definition| !self.defined.iter().any(|key| key == definition.key));
         if !tells {
             return;
         }
         for definition in &left {
             let Err(mut error) = self.define(definition) else { continue };
-            let missing = |other: &&Definition<'_>| match &other.function {
-                Some(function) => error.message == format!("there is no function `{}`", function.name()),
-                None => error.message == format!("`{}` is not known", other.key),
-            };
-            if let Some(other) = left.iter().find(missing) {
+            if let Some(other) = left.iter().find(|other| other.is_missing(&error)) {
                 let (name, other) = (definition.name(), other.name());
                 (error.message, error.hint) = if name == other {
                     let hint = "a law has as many operations at every moment: write the steps out";

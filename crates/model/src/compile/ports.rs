@@ -6,7 +6,7 @@ use hwasp_settings::text::shorten;
 use hwasp_settings::{listed, nearest};
 
 use super::{Compiler, MOST_OBSERVED};
-use crate::anatomy::{Anatomy, Joint};
+use crate::anatomy::Anatomy;
 use crate::columns::Column;
 use crate::names::{InPlace, Names, Place};
 use crate::robot::Target;
@@ -147,12 +147,11 @@ impl Compiler<'_, '_> {
     }
 }
 
-/// What a key of the law acts on, and what it takes; else what is wrong, and a way out.
+/// What a key of the law acts on, and what it takes; else what is wrong, and a way out. Elements are named, or counted as `#2`.
 fn target(anatomy: &Anatomy, name: &str) -> Result<(Target, Dimension), (String, String)> {
     let (kind, element) = name.split_once('.').unwrap_or((name, ""));
-    let joints: Vec<&Joint> = anatomy.joints.iter().filter(|joint| joint.dof.len() == 1).collect();
     let names: Vec<&str> = match kind {
-        "joint" => joints.iter().map(|joint| joint.name.as_str()).collect(),
+        "joint" => anatomy.joints.iter().map(|joint| joint.name.as_str()).collect(),
         "tendon" => anatomy.tendons.iter().map(String::as_str).collect(),
         "actuator" => anatomy.actuators.iter().map(|actuator| actuator.name.as_str()).collect(),
         _ => {
@@ -160,17 +159,30 @@ fn target(anatomy: &Anatomy, name: &str) -> Result<(Target, Dimension), (String,
             return Err((message, "write \"joint.NAME\", \"tendon.NAME\" or \"actuator.NAME\"".to_owned()));
         }
     };
-    let found = names.iter().position(|known| *known == element && !element.is_empty());
-    let Some(at) = found else {
-        let hint = match nearest(element, names.iter().copied()) {
+    // Names in quotes, as formulas have them.
+    let element = element.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(element);
+    let found = match element.strip_prefix('#').and_then(|number| number.parse().ok()) {
+        Some(number) => (number < names.len()).then_some(number),
+        None => names.iter().position(|known| *known == element && !element.is_empty()),
+    };
+    // A ball or a free joint takes several efforts.
+    let single = |at: &usize| kind != "joint" || anatomy.joints[*at].dof.len() == 1;
+    let Some(at) = found.filter(single) else {
+        let known = || (0..names.len()).filter(single).map(|at| names[at]).filter(|name| !name.is_empty());
+        let hint = match nearest(element, known()) {
+            _ if found.is_some() => "a law acts on hinges and slides".to_owned(),
             Some(near) => format!("did you mean `{kind}.{near}`?"),
-            None if names.is_empty() => format!("the model has no {kind} that a law could act on"),
-            None => format!("known here: {}", listed(names.iter().copied())),
+            None if known().next().is_none() => format!("the model has no {kind} that a law could act on"),
+            None => format!("known here: {}", listed(known())),
         };
-        return Err((format!("the model has no {kind} `{}`", shorten(element, 60)), hint));
+        let message = match found {
+            Some(_) => format!("`{}` is a ball or free joint", shorten(name, 60)),
+            None => format!("the model has no {kind} `{}`", shorten(element, 60)),
+        };
+        return Err((message, hint));
     };
     Ok(match kind {
-        "joint" => (Target::Joint(joints[at].dof.start), joints[at].effort()),
+        "joint" => (Target::Joint(anatomy.joints[at].dof.start), anatomy.joints[at].effort()),
         "tendon" => (Target::Tendon(at), Dimension::Force),
         _ => (Target::Actuator(at), Dimension::None),
     })

@@ -6,6 +6,7 @@ use hwasp_mujoco::engine::{FieldPath, Spec};
 use hwasp_settings::text::shorten;
 
 use super::Compiler;
+use crate::anatomy::measured;
 use crate::columns::Column;
 use crate::names::{OwnName, Place};
 use crate::parameter::name_fault;
@@ -83,6 +84,34 @@ impl Compiler<'_, '_> {
         (!texts.is_empty()).then_some(parts)
     }
 
+    /// What each parameter of the design does, in words.
+    pub(super) fn uses(
+        &self,
+        count: usize,
+        shaping: Option<&Found>,
+        places: &[(&[Part], &'static str)],
+    ) -> Vec<String> {
+        let reads = |parts: &[Part]| self.formulas.inputs(parts).1;
+        let places: Vec<_> = places.iter().map(|(parts, name)| (reads(parts), *name)).collect();
+        let set: Vec<(&FieldPath, Vec<usize>)> = shaping
+            .iter()
+            .flat_map(|found| found.fields.iter().zip(&found.parts).map(|(field, &part)| (field, reads(&[part]))))
+            .collect();
+        let words = |i: usize| {
+            let own = |(field, reads): &(&FieldPath, Vec<usize>)| reads.contains(&i).then(|| field.to_string());
+            let fields: Vec<String> = set.iter().filter_map(own).collect();
+            let read: Vec<&str> =
+                places.iter().filter(|(reads, _)| reads.contains(&i)).map(|(_, name)| *name).collect();
+            match (fields.is_empty(), read.is_empty()) {
+                (true, true) => "nothing reads it".to_owned(),
+                (true, false) => format!("in {}", read.join(", ")),
+                (false, true) => format!("sets {}", fields.join(", ")),
+                (false, false) => format!("sets {}; in {}", fields.join(", "), read.join(", ")),
+            }
+        };
+        (0..count).map(words).collect()
+    }
+
     /// Fields of the model that formulas set.
     pub(super) fn shaping(&mut self, spec: &Spec) -> Option<Found> {
         let settings = self.settings;
@@ -130,6 +159,14 @@ impl Compiler<'_, '_> {
                 self.refuse(&keys, "a field takes one number", Some("set its components one by one".into()));
                 continue;
             };
+            let wanted = spec.quantity(&field).map_or(Quantity::Unknown, measured);
+            if let (Quantity::Known(a), Quantity::Known(b)) = (value.quantity, wanted)
+                && !a.fits(b)
+            {
+                let hint = "see the units of the parameters and numbers in it";
+                self.refuse(&keys, format!("the formula is in {a}, and {field} takes {b}"), Some(hint.into()));
+                continue;
+            }
             let (_, parameters) = self.formulas.inputs(&[part]);
             found.parameters.extend(parameters);
             found.fields.push(field);

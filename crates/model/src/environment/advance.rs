@@ -26,6 +26,9 @@ impl ModelEnvironment {
             self.draw(&formula.draws);
             if let Some(ready) = &mut self.forces {
                 ready.run(formula, &self.values);
+                if let Some(value) = ready.out.iter().find(|value| !value.is_finite()) {
+                    return Err(format!("a force of [task.forces] is {value} N: see its formula"));
+                }
                 self.body.push(bodies, &ready.out);
             }
         }

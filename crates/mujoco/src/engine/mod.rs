@@ -45,4 +45,4 @@ pub use picture::{Painter, PictureError};
 pub use quantity::Quantity;
 pub use shape::Shape;
 pub use simulation::{Simulation, Wrench};
-pub use spec::{Element, FieldPath, Spec, SpecError};
+pub use spec::{Element, FieldPath, SettableField, Spec, SpecError, settable_fields};

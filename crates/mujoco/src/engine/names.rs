@@ -15,6 +15,13 @@ pub struct GeomId(pub(super) usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BodyId(pub(super) usize);
 
+impl BodyId {
+    /// Its place among the bodies of the [`Inventory`](super::Inventory).
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
 /// An actuator of the model, as [`GeomId`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ActuatorId(pub(super) usize);
@@ -30,9 +37,23 @@ impl ActuatorId {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TendonId(pub(super) usize);
 
+impl TendonId {
+    /// Its place among the tendons of the [`Inventory`](super::Inventory).
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
 /// A site of the model, as [`GeomId`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SiteId(pub(super) usize);
+
+impl SiteId {
+    /// Its place among the sites of the [`Inventory`](super::Inventory).
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
 
 /// A sensor of the model, as [`GeomId`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -207,6 +207,48 @@ pub(super) fn fields(kind: Kind) -> &'static [Field] {
     }
 }
 
+/// A field that can be set, as a reference tells it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SettableField {
+    /// The kind of its elements.
+    pub kind: Kind,
+    /// MJCF's name.
+    pub name: &'static str,
+    /// How many numbers it has.
+    pub len: usize,
+    /// Letters that name its numbers, if any.
+    pub letters: &'static str,
+    /// What they measure, by the symbols of units.
+    pub units: String,
+}
+
+/// Every field that can be set, by the kinds of elements.
+pub fn settable_fields() -> Vec<SettableField> {
+    let told = |quantity: Quantity| match quantity.unit() {
+        "" => if quantity == Quantity::Number { "a number" } else { "as the model means it" }.to_owned(),
+        unit => unit.to_owned(),
+    };
+    let units = |measures| match measures {
+        Measures::All(quantity) => told(quantity),
+        Measures::First(first, others) => format!("{}, then {}", told(first), told(others)),
+        Measures::Joint(turns, slides) | Measures::Polynomial(turns, slides) if turns != slides => {
+            format!("{} of a hinge, {} of a slide", told(turns), told(slides))
+        }
+        Measures::Joint(all, _) | Measures::Polynomial(all, _) => told(all),
+    };
+    let of_kind = |kind: Kind| {
+        let settable = move |field: &Field| SettableField {
+            kind,
+            name: field.name,
+            len: field.len,
+            letters: field.letters,
+            units: units(field.measures),
+        };
+        fields(kind).iter().map(settable)
+    };
+    KINDS.into_iter().flat_map(of_kind).collect()
+}
+
 impl Field {
     /// What one of its numbers may be.
     pub(super) fn limits(&self, index: usize) -> Limits {

@@ -22,6 +22,7 @@ use super::{BuildError, Files, Simulation, log};
 use mount::Mount;
 
 pub use error::SpecError;
+pub use fields::{SettableField, settable_fields};
 pub use path::{Element, FieldPath};
 
 /// A model in the making, from MJCF or URDF, whose numbers are set by name before it is compiled.

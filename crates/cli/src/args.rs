@@ -76,7 +76,8 @@ pub(crate) enum Command {
     Train(TrainArgs),
     /// Evaluate a run: the deterministic policy on held-out starts, on the hardware as built
     Eval(EvalArgs),
-    /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes
+    /// Say of a run's design what can be said without simulating it; of a hand also what it pinches, lifts and how it closes; of
+    /// a model what another design changes
     Design(DesignArgs),
     /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON; a hand
     /// as MJCF, URDF, STL and OpenSCAD
@@ -107,7 +108,7 @@ pub(crate) enum Command {
     Laws,
     /// Draw the law of an experiment as a computational graph
     Graph(GraphArgs),
-    /// Begin a project for a mechanism of your own: law, plant, task, experiment and tests, ready to train
+    /// Begin with a robot of your own: an experiment for its model, or a project in Rust for a mechanism, ready to train
     Init(InitArgs),
 }
 
@@ -339,16 +340,19 @@ pub(crate) enum TemplateArg {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct InitArgs {
-    /// The folder of the project, empty or new
-    #[arg(value_parser = path())]
-    pub(crate) folder: PathBuf,
-    /// What its physics are
-    #[arg(long, value_enum, default_value_t = TemplateArg::Plant)]
-    pub(crate) template: TemplateArg,
-    /// Its name as a Rust package [default: the folder's]
+    /// A robot's model, .xml (MJCF) or .urdf, for an experiment with it; or the folder of a project in Rust, empty or new
+    #[arg(value_name = "MODEL|FOLDER", value_parser = path())]
+    pub(crate) what: PathBuf,
+    /// The experiment of a model, .toml [default: called like the model, beside it]
+    #[arg(long, value_name = "FILE", value_parser = path())]
+    pub(crate) out: Option<PathBuf>,
+    /// The name of the experiment, or of the project as a Rust package [default: the model's, the folder's]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    /// The checkout of hwasp that it is built with [default: the one that this program was built in]
+    /// What the physics of a project are [default: plant]
+    #[arg(long, value_enum)]
+    pub(crate) template: Option<TemplateArg>,
+    /// The checkout of hwasp that a project is built with [default: the one that this program was built in]
     #[arg(long, value_name = "CHECKOUT", value_parser = path())]
     pub(crate) path: Option<PathBuf>,
 }

@@ -79,6 +79,6 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::List => commands::list::run(catalogue),
         Command::Laws => commands::laws::run(),
         Command::Graph(graph) => commands::graph::run(graph, catalogue),
-        Command::Init(init) => commands::init::run(init),
+        Command::Init(init) => commands::init::run(init, catalogue),
     }
 }

@@ -1,18 +1,18 @@
 //! What the program says, as text.
 
+pub(crate) mod check;
 pub(crate) mod design;
 pub(crate) mod parts;
 
 use std::fmt::Write;
 use std::path::Path;
 
-use hwasp_core::Policy;
 use hwasp_experiment::Experiment;
 use hwasp_export::{ExportFile, Kind};
 use hwasp_runs::text::{grouped, quantity};
 use hwasp_runs::{Replay, Summary};
 use hwasp_training::stats::{Interval, LEAST_VALUES};
-use hwasp_training::{Assembly, Checkpoint, Evaluation, MeanInterval};
+use hwasp_training::{Checkpoint, Evaluation, MeanInterval};
 
 /// The line before a training.
 pub(crate) fn beginning(spec: &Experiment, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
@@ -154,63 +154,6 @@ pub(crate) fn exported(spec: &Experiment, out: &Path, files: &[ExportFile], left
         let _ = writeln!(text, "  without {}: {problem} has no hand", kinds.join(", "));
     }
     text
-}
-
-/// A sound experiment.
-pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly) -> String {
-    let policy = &assembly.policy;
-    let training = if let Some((popsize, each)) = assembly.generation() {
-        let generations = spec.train.env_steps / (popsize as u64 * each);
-        format!("about {} generations of {popsize} candidates of {} steps", grouped(generations), grouped(each))
-    } else {
-        iterations(spec, assembly)
-    };
-    let design = policy.space().names().len();
-    let drawn = match policy.drawn_actions() {
-        0 => String::new(),
-        drawn if drawn == design => ", drawn once an episode".to_owned(),
-        drawn => format!(", {drawn} of them drawn once an episode"),
-    };
-    format!(
-        "{} ({}) is sound\n  problem     {}, {design} design parameter{}{drawn}\n  policy      {} parameters, action: {}\n  \
-         training    {} steps: {training}\n",
-        spec.name,
-        spec.method.name(),
-        spec.task.name(),
-        if design == 1 { "" } else { "s" },
-        policy.param_count(),
-        shorten(policy.action_names()),
-        grouped(spec.train.env_steps),
-    )
-}
-
-/// The iterations of a training by gradients. Where steps are counted, what lanes are too short for is told.
-fn iterations(spec: &Experiment, assembly: &Assembly) -> String {
-    let (train, (iterations, last)) = (&spec.train, assembly.iterations());
-    let (lanes, episode) = (train.episodes_per_iteration, train.episode_steps);
-    if train.steps_per_iteration == 0 {
-        let last = if last == lanes as u64 { String::new() } else { format!(", the last of {last}") };
-        return format!("{} iterations of {lanes} episodes of {episode} steps{last}", grouped(iterations));
-    }
-    let usual = train.steps_per_iteration as u64;
-    let last = if last == usual { String::new() } else { format!(", the last of {}", grouped(last)) };
-    let mut text = format!("{} iterations of {} steps in {lanes} lanes{last}", grouped(iterations), grouped(usual));
-    if let Some(lane) = train.short_lanes() {
-        let _ = write!(
-            text,
-            "\n  warning     a lane takes {lane} steps an iteration, and an episode may have {episode}: what comes after step \
-             {lane} of an episode is never seen\n              take fewer lanes (train.episodes_per_iteration) or more steps \
-             (train.steps_per_iteration), unless episodes end before"
-        );
-    }
-    text
-}
-
-/// The first few of many names.
-fn shorten(names: &[String]) -> String {
-    const SHOWN: usize = 4;
-    let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN { format!("{shown}, … ({} in all)", names.len()) } else { shown }
 }
 
 #[cfg(test)]

@@ -14,6 +14,9 @@ pub use fault::EnvFault;
 const STEPS: usize = 200;
 /// How many random starts are compared.
 const STARTS: u64 = 8;
+/// The cause of an [`EnvFault::Differs`] where a world depends on more of the design than [`EnvSpec::shaped_by`] says.
+pub const MADE_FROM: &str =
+    "both worlds are made from the same design, as far as `shaped_by` says what they are made from";
 
 /// Drives environments from `make` with random commands through `law`, and returns the first broken promise. Every episode
 /// has a design of its own: each parameter is drawn evenly between its limits, wherever the law's design begins.
@@ -278,7 +281,7 @@ impl Check<'_> {
                 *value = design[i];
             }
         }
-        let cause = "both worlds are made from the same design, as far as `shaped_by` says what they are made from";
+        let cause = MADE_FROM;
         let (mut one, mut two) = (self.make.make(None), self.make.make(None));
         Self::reset(one.as_mut(), &design, 5)?.check_same(&Self::reset(two.as_mut(), &other, 5)?, cause, 0)?;
         for (i, command) in commands.iter().enumerate() {

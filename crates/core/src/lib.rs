@@ -21,7 +21,7 @@ mod schedule;
 mod streams;
 mod units;
 
-pub use check_env::{EnvFault, check_env};
+pub use check_env::{EnvFault, MADE_FROM, check_env};
 pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
 pub use environment::{
     CommandPort, End, EnvSpec, Environment, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,

@@ -34,7 +34,7 @@ pub(crate) fn changes(robot: &Robot, before: &[f64], after: &[f64]) -> Result<Ve
 /// its middle.
 fn numbers(robot: &Robot, design: &[f64]) -> Result<(Vec<Number>, Vec<Number>), AnyError> {
     let mut making = robot.additions.spec(&robot.main, &robot.files)?;
-    let mut values = crate::corners::columns(robot, design, 0.0);
+    let mut values = crate::corners::columns(robot, design, 0.0, 1.0);
     let mut set = Vec::new();
     if let Some(shaping) = &robot.shaping {
         for (field, value) in shaping.fields.iter().zip(run(&shaping.formula, design, &values)) {

@@ -160,13 +160,10 @@ impl Compiler<'_, '_> {
         // Fields and delays draw too, with no quantity of the episode.
         let drawn = !self.names.columns.draws_of(Stage::Random).is_empty();
         let random = random.or_else(|| drawn.then(Vec::new)).map(|parts| {
-            let columns = (0..parts.len()).filter_map(|i| place(Column::Random(i))).collect();
-            (formula(self, Some(Stage::Random), numbered(&parts)), columns)
+            let columns: Vec<usize> = (0..parts.len()).filter_map(|i| place(Column::Random(i))).collect();
+            let named = columns.iter().map(|&at| self.names.columns.names()[at].clone()).zip(parts).collect();
+            (formula(self, Some(Stage::Random), named), columns)
         });
-        let drawn_at = random.iter().flat_map(|(_, columns): &(Formula, Vec<usize>)| columns);
-        let random_names = drawn_at.map(|&at| self.names.columns.names()[at].clone()).collect();
-        let kind_names = settings.kinds.iter().map(|(name, _)| Arc::from(name.as_str()));
-        let other = if settings.kinds.is_empty() { "all" } else { "other" };
         let mut env = self.env(&observed, &law);
         // What only the law reads is not sampled where the law's efforts are.
         let by_task = self.commands_of(&outputs);
@@ -184,7 +181,6 @@ impl Compiler<'_, '_> {
             additions,
             columns: self.names.columns.all().to_vec(),
             states,
-            random_names,
             random,
             shaping,
             start: start.map(|(parts, targets)| (formula(self, Some(Stage::Start), numbered(&parts)), targets)),
@@ -197,7 +193,7 @@ impl Compiler<'_, '_> {
                 kinds: kinds.len(),
                 memory: memory.len(),
             },
-            kinds: kind_names.chain([Arc::from(other)]).collect(),
+            kinds: kind_names(settings),
             terms: terms.into_iter().map(|(name, _)| name).collect(),
             forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
             delays: delays.map(|parts| formula(self, None, numbered(&parts))),
@@ -292,4 +288,10 @@ impl Compiler<'_, '_> {
         self.refuse(keys, message, Some("sum, norm, any or a component make one of it".into()));
         None
     }
+}
+
+/// What kinds of episodes are called; the last is of those that are of no other.
+fn kind_names(settings: &ModelSettings) -> Vec<Arc<str>> {
+    let other = if settings.kinds.is_empty() { "all" } else { "other" };
+    settings.kinds.iter().map(|(name, _)| name.as_str()).chain([other]).map(Arc::from).collect()
 }

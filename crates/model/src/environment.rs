@@ -152,7 +152,7 @@ impl ModelEnvironment {
             ready.run(formula, &self.values);
             for (i, (&column, &value)) in columns.iter().zip(&ready.out).enumerate() {
                 if !value.is_finite() {
-                    let name = robot.random_names.get(i).map_or("a quantity", String::as_str);
+                    let name = &formula.program.output_names()[i];
                     return Err(format!(
                         "`{name}` of [task.random] is {value}: see the limits that it is drawn between"
                     ));

@@ -85,8 +85,6 @@ pub(crate) struct Robot {
     pub(crate) states: Vec<usize>,
     /// Columns of the law's commands and states: for the law at the rate of the physics.
     pub(crate) random: Option<(Formula, Vec<usize>)>,
-    /// What each component of those quantities is called.
-    pub(crate) random_names: Vec<String>,
     pub(crate) shaping: Option<Shaping>,
     /// Targets in positions and velocities.
     pub(crate) start: Option<(Formula, Vec<Reading>)>,

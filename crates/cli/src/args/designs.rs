@@ -10,9 +10,13 @@ use super::parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, threads, whole};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct DesignArgs {
-    /// A run folder, as `hwasp train` writes one
-    #[arg(value_parser = path())]
+    /// A run folder, as `hwasp train` writes one; or an experiment, for what its design parameters change of the model
+    #[arg(value_name = "RUN|EXPERIMENT", value_parser = path())]
     pub(crate) run: PathBuf,
+    /// Another value of a parameter, such as `shank="0.6 m"`: what it changes of the model, as numbers; may be repeated
+    /// [default for an experiment: from the lower to the upper limit of each parameter that shapes the model]
+    #[arg(long = "at", value_name = "NAME=VALUE")]
+    pub(crate) at: Vec<String>,
     /// Where a hand's closing chart is drawn, closing.svg and closing.png [default: the run folder]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,

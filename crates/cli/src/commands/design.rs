@@ -3,12 +3,20 @@
 use hwasp_experiment::Catalogue;
 use hwasp_workshop::design::{DesignReport, write_closing};
 
-use super::run_folder;
+use super::{changes, run_folder};
 use crate::args::DesignArgs;
 use crate::failure::Failure;
 use crate::{output, report};
 
 pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let path = &args.run;
+    let experiment = path.exists() || path.extension().is_some() || {
+        let name = path.to_string_lossy();
+        catalogue.presets().iter().any(|preset| preset.name == name)
+    };
+    if experiment && (!path.is_dir() || !args.at.is_empty()) {
+        return changes::run(args, catalogue);
+    }
     let report = DesignReport::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;
     if args.out.is_some() && report.hand.is_none() {
         let task = &report.task;

@@ -3,23 +3,35 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use hwasp_experiment::Catalogue;
 use hwasp_settings::text::printable;
 
+use super::begin;
 use crate::args::{InitArgs, TemplateArg};
 use crate::failure::Failure;
 use crate::output;
 use crate::project::{Lock, Project, ProjectError, Template};
 
-pub(crate) fn run(args: &InitArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &InitArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    if begin::is_model(&args.what) {
+        return begin::run(args, catalogue);
+    }
+    if let Some(out) = &args.out {
+        let (out, what) = (out.display(), args.what.display());
+        let message = format!("--out {out} names the experiment of a model, and {what} is none");
+        return Err(
+            Failure::input(message).hint("a model ends in .xml, .mjcf or .urdf; a project has a folder and no --out")
+        );
+    }
     let template = match args.template {
-        TemplateArg::Plant => Template::Plant,
-        TemplateArg::Mjcf => Template::Mjcf,
+        None | Some(TemplateArg::Plant) => Template::Plant,
+        Some(TemplateArg::Mjcf) => Template::Mjcf,
     };
-    let project = Project::new(&args.folder, args.name.as_deref(), template, args.path.as_deref()).map_err(failed)?;
+    let project = Project::new(&args.what, args.name.as_deref(), template, args.path.as_deref()).map_err(failed)?;
     if project.write().map_err(failed)? == Lock::FirstBuild {
         output::remark("note: Cargo could not be asked about Cargo.lock: the first build writes it anew");
     }
-    Ok(output::print(&next(&project, &args.folder, template))?)
+    Ok(output::print(&next(&project, &args.what, template))?)
 }
 
 /// What was made, and what to do with it.
@@ -50,7 +62,7 @@ fn next(project: &Project, folder: &Path, template: Template) -> String {
 }
 
 /// A path as a shell reads it.
-fn shell(path: &Path) -> String {
+pub(super) fn shell(path: &Path) -> String {
     let path = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
     if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', "'\\''")) }

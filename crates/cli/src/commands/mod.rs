@@ -1,5 +1,7 @@
 //! One file per command.
 
+mod begin;
+mod changes;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod design;

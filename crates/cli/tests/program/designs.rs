@@ -103,3 +103,31 @@ fn a_chart_that_cannot_be_written() {
         assert!(errors.starts_with(error) && errors.contains("hint: name another folder with --out"), "{errors}");
     }
 }
+
+/// What a parameter changes of a model: what it sets, and what follows of that.
+#[cfg(feature = "mujoco")]
+#[test]
+fn what_another_design_changes() {
+    let sandbox = Sandbox::new("design-changes");
+    insta::assert_snapshot!(sandbox.transcript(&[
+        "design hopper --at shank=0.6m --at gear=100",
+        "design hopper --at rest=0.1rad",
+        "design hopper",
+    ]));
+    let output = sandbox.run("design hopper --at shank=0.6m --json");
+    let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let changes = printed[0]["changes"].as_array().unwrap();
+    let of = |name: &str| {
+        changes.iter().find(|change| change["name"] == name).unwrap_or_else(|| panic!("{name}: {printed}"))
+    };
+    let (size, mass) = (of("geom.shank.size[1]"), of("mass of body.shank"));
+    assert_eq!((size["before"].as_f64(), size["after"].as_f64()), (Some(0.25), Some(0.3)));
+    // A capsule of radius 0.035 m and density 900 kg/m3: a cylinder of the length and a ball.
+    let capsule =
+        |length: f64| 900.0 * std::f64::consts::PI * (0.035_f64.powi(2) * length + 4.0 / 3.0 * 0.035_f64.powi(3));
+    for (at, length) in [("before", 0.5), ("after", 0.6)] {
+        assert!((mass[at].as_f64().unwrap() - capsule(length)).abs() < 1e-9, "{mass}");
+    }
+    let height = of("height of body.torso at the start");
+    assert!((height["after"].as_f64().unwrap() - 1.35).abs() < 1e-9, "{height}");
+}

@@ -1,6 +1,6 @@
 //! Experiments: the list, checks, drawings, and files with faults.
 
-use crate::sandbox::Sandbox;
+use crate::sandbox::{Sandbox, without_figures};
 
 /// Without the engine there are fewer.
 #[cfg(feature = "mujoco")]
@@ -12,7 +12,7 @@ fn the_list() {
 #[test]
 fn sound_experiments() {
     let sandbox = Sandbox::new("check");
-    insta::assert_snapshot!(sandbox.transcript(&[
+    insta::assert_snapshot!(without_figures(&sandbox.transcript(&[
         "check mass-spring",
         "check mass-spring --method minimal",
         "check mass-spring --set design.placements.stiffness[0..3]=episode",
@@ -20,7 +20,21 @@ fn sound_experiments() {
         "check reach --method fixed --set train.env_steps=1e6",
         "check reach --set train.steps_per_iteration=2048 --set train.episodes_per_iteration=8",
         "check reach --set train.steps_per_iteration=1000",
-    ]));
+    ])));
+}
+
+/// A robot from a model: what its design sets, its reward, and what one episode an iteration is worth.
+#[cfg(feature = "mujoco")]
+#[test]
+fn a_sound_robot() {
+    let sandbox = Sandbox::new("check-robot");
+    let told =
+        sandbox.transcript(&["check hopper --set train.steps_per_iteration=0 --set train.episodes_per_iteration=1"]);
+    assert!(told.contains("one episode an iteration teaches the design nothing"), "{told}");
+    insta::assert_snapshot!(without_figures(&told));
+    // Its start follows a parameter of the law.
+    let gripper = sandbox.transcript(&["check tendon-gripper"]);
+    assert!(gripper.contains("[exit 0]") && gripper.contains("that shape no model"), "{gripper}");
 }
 
 #[test]

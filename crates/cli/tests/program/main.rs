@@ -6,6 +6,8 @@
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
 mod arguments;
+#[cfg(feature = "mujoco")]
+mod begun;
 mod comparisons;
 mod designs;
 #[cfg(target_os = "linux")]

@@ -1,6 +1,6 @@
 //! Robots of one's own: model files, formulas, designs.
 
-use super::Given::Made;
+use super::Given::{Made, Nothing};
 use super::{Case, case};
 use crate::sandbox::Sandbox;
 
@@ -31,6 +31,10 @@ const LEG: &str = r#"<mujoco model="leg">
   <sensor><gyro name="gyro" site="toe"/></sensor>
 </mujoco>
 "#;
+
+/// A shank that is designed.
+const SHANK: &str =
+    "[task.design]\nshank = { limits = [\"0.3 m\", \"0.7 m\"], sets = [\"geom.shin.size[1] = shank / 2\"] }\n";
 
 /// An experiment with the leg: keys of `[task]`, and tables behind them. What they do not say is sound.
 fn put(sandbox: &Sandbox, keys: &str, tables: &str) {
@@ -236,5 +240,73 @@ pub(super) const CASES: &[Case] = &[
         "[task.design]\nshank = { limits = [\"0.3 m\", \"0.7 m\"], sets = [\"geom.shin.size[1] = shank - 0.4 m\"] }\n"
     ),
     robot!("A field that becomes no number", "set = [\"body.torso.pos.z = 1 / 0\"]\n"),
+    robot!(
+        "A field in another unit",
+        "",
+        "[task.design]\nshank = { limits = [\"0.3 kg\", \"0.7 kg\"], sets = [\"geom.shin.size[1] = shank / 2\"] }\n"
+    ),
     robot!("A motor for a joint that there is not", "motors = { ankle = { limits = [-1, 1] } }\n"),
+    robot!("A motor that does nothing", "motors = { lift = { limits = [-1, 1], gear = 0 } }\n"),
+    robot!("A free base for a model that says how its base is held", "base = \"free\"\n"),
+    robot!("A floor for a model that has one", "floor = true\n"),
+    robot!("A name with dots that has no quotes", "", "[task.law]\njoint.knee = \"3 N*m\"\n"),
+    case(
+        "A model that is called like a file of runs",
+        Made(|s| {
+            put(s, "model = \"metrics.csv\"\n", "");
+            s.write("metrics.csv", LEG);
+        }),
+        "hwasp check mine.toml",
+    ),
+    // What is drawn.
+    robot!("Limits of a draw the wrong way round", "", "[task.random]\nload = \"uniform(2 kg, 1 kg)\"\n"),
+    robot!("A draw between logarithms of what has none", "", "[task.random]\nload = \"log_uniform(-3, -1)\"\n"),
+    robot!("A negative standard deviation", "", "[task.start]\n\"joint.*.vel\" = \"normal(0, -1)\"\n"),
+    robot!(
+        "A draw whose limits are in order by chance",
+        "",
+        "[task.random]\nfirst = \"uniform(0, 1)\"\nload = \"uniform(2, 1 + 0.1 * first)\"\n"
+    ),
+    robot!("An observation that becomes no number", "observe = [\"log(joint.knee.pos - 10)\"]\n"),
+    // What another design changes.
+    case("A design parameter that there is not", Made(|s| put(s, "", "")), "hwasp design mine.toml --at shank=1"),
+    case(
+        "A value of a design beyond its limits",
+        Made(|s| put(s, "", SHANK)),
+        "hwasp design mine.toml --at 'shank=0.9 m'",
+    ),
+    case("A value of a design without a unit", Made(|s| put(s, "", SHANK)), "hwasp design mine.toml --at shank=0.5"),
+    case("A value of a design without a name", Made(|s| put(s, "", SHANK)), "hwasp design mine.toml --at 0.5"),
+    case("A design that shapes nothing", Made(|s| put(s, "", "")), "hwasp design mine.toml"),
+    case("A design without a model", Nothing, "hwasp design reach --at gear=1"),
+    // An experiment to begin with.
+    case("A model to begin with that is not there", Nothing, "hwasp init robot.xml"),
+    case(
+        "A model to begin with that has an experiment",
+        Made(|s| put(s, "", "")),
+        "hwasp init robot.xml --out mine.toml",
+    ),
+    case("An experiment with another ending", Made(|s| put(s, "", "")), "hwasp init robot.xml --out mine.json"),
+    case(
+        "An experiment that cannot see the model",
+        Made(|s| {
+            put(s, "", "");
+            std::fs::create_dir(s.path("deep")).unwrap();
+        }),
+        "hwasp init robot.xml --out deep/mine.toml",
+    ),
+    case("A project for a model", Made(|s| put(s, "", "")), "hwasp init robot.xml --template mjcf"),
+    case("A folder with an experiment", Nothing, "hwasp init lamp --out lamp.toml"),
+    case(
+        "A model to begin with in which nothing moves",
+        Made(|s| s.write("robot.xml", "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")),
+        "hwasp init robot.xml",
+    ),
+    case(
+        "A model to begin with that nothing drives",
+        Made(|s| {
+            s.write("robot.xml", "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>");
+        }),
+        "hwasp init robot.xml",
+    ),
 ];

@@ -11,7 +11,7 @@ use hwasp_algos::{Archive, Array};
 use hwasp_core::Serial;
 use hwasp_experiment::{Catalogue, Layers, load, resolve};
 use hwasp_runs::checkpoint::{Header, decode, encode};
-use hwasp_runs::metrics::{MetricsTable, MetricsWriter};
+use hwasp_runs::metrics::{Columns, MetricsTable, MetricsWriter};
 use hwasp_runs::{read_policy, write_policy};
 use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, params_at, train_from};
 
@@ -226,8 +226,9 @@ pub fn metrics(bytes: &[u8]) {
             return;
         }
     };
-    let mut writer =
-        MetricsWriter::new(Vec::new(), &table.learner, &table.design_totals).expect("names that were read");
+    let learner: Vec<&str> = table.learner.iter().map(String::as_str).collect();
+    let columns = Columns { learner: &learner, terms: &table.terms, totals: &table.design_totals };
+    let mut writer = MetricsWriter::new(Vec::new(), columns).expect("names that were read");
     table.rows.iter().for_each(|row| writer.append(row).expect("a row that was read"));
     let again = MetricsTable::read(&writer.into_inner()[..]).expect("what was written can be read");
     assert_eq!((again.design_totals, again.unfinished_line), (table.design_totals, None));
@@ -243,5 +244,7 @@ pub fn metrics(bytes: &[u8]) {
 fn bits_of_row(row: &MetricsRow) -> Vec<u64> {
     let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
     let counts = [row.iteration, row.env_steps].into_iter();
-    counts.chain(fixed.iter().chain(&row.learner).chain(&row.design_totals).map(|v| v.to_bits())).collect()
+    counts
+        .chain(fixed.iter().chain(&row.learner).chain(&row.terms).chain(&row.design_totals).map(|v| v.to_bits()))
+        .collect()
 }

@@ -116,6 +116,7 @@ mod tests {
                     context: vec![],
                     log_prob: 0.0,
                     outcome: None,
+                    terms: vec![],
                 },
                 Episode {
                     rows: 3..5,
@@ -126,6 +127,7 @@ mod tests {
                     context: vec![],
                     log_prob: 0.0,
                     outcome: None,
+                    terms: vec![],
                 },
             ],
             ..Batch::default()

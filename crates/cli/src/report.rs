@@ -117,6 +117,9 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
     );
     text.push_str(&line("discounted return", &evaluation.discounted_return));
     text.push_str(&line("return", &evaluation.undiscounted_return));
+    for (term, mean) in &evaluation.terms {
+        let _ = writeln!(text, "    {term:<18} {mean:>10.2}");
+    }
     // The first is over all episodes.
     let shown = if per_kind { evaluation.success.len() } else { 1 };
     for rate in evaluation.success.iter().take(shown) {
@@ -174,6 +177,7 @@ mod tests {
             worst_discounted_return: 0.0,
             discarded_episodes: 0,
             success: kinds.iter().map(rate).collect(),
+            terms: [].into(),
         }
     }
 
@@ -194,5 +198,16 @@ mod tests {
         let gear = counted(&[]);
         assert_eq!(evaluation(&gear, false), evaluation(&gear, true));
         assert_eq!(evaluation(&gear, true).lines().count(), 3);
+    }
+
+    #[test]
+    fn the_terms_of_the_reward_stand_below_their_sum() {
+        let named =
+            Evaluation { terms: [("effort".to_owned(), -0.25), ("forward".to_owned(), 1.25)].into(), ..counted(&[]) };
+        let text = evaluation(&named, false);
+        assert_eq!(
+            text.lines().skip(3).collect::<Vec<_>>(),
+            ["    effort                  -0.25", "    forward                  1.25"]
+        );
     }
 }

@@ -178,6 +178,7 @@ impl Task for Haul {
             horizon: 20,
             time_step: 0.1,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

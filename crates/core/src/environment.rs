@@ -79,6 +79,9 @@ pub struct CommandPort {
 }
 
 /// What an environment is from outside.
+/// The most terms of a reward that are told apart: each has a column in learning curves.
+pub const MOST_TERMS: usize = 32;
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvSpec {
     /// What the controller sees.
@@ -99,6 +102,9 @@ pub struct EnvSpec {
     /// worlds, which meet the design only through the law. Such parameters stay as they are during an episode.
     pub shaped_by: Vec<String>,
 }
+    /// The names of the terms that a reward is the sum of, as [`Environment::terms`] has them, at most [`MOST_TERMS`];
+    /// none where it is one number.
+    pub terms: Vec<String>,
 
 /// Physics, without purpose: what the robot and the world do under an effort.
 pub trait Plant: Send {
@@ -145,6 +151,11 @@ pub trait Task: Send {
     fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
     /// Whether this state has no future; asked after [`reward`](Self::reward), so that what it has counted is known.
+    /// What each named term of the reward came to so far in the episode.
+    fn terms(&self) -> &[f64] {
+        &[]
+    }
+
     fn terminated(&self, _plant: &Self::Plant) -> bool {
         false
     }
@@ -189,6 +200,11 @@ pub trait Environment: Send {
     }
 
     /// What went wrong, after a step that [faulted](End::Faulted).
+    /// What each named term of the reward came to so far in the episode ([`EnvSpec::terms`]): their sum is the return.
+    fn terms(&self) -> &[f64] {
+        &[]
+    }
+
     fn fault(&self) -> Option<String> {
         None
     }
@@ -288,6 +304,10 @@ impl<T: Task> Environment for Robot<T> {
 
 /// Makes environments of one kind, for as many threads as there are.
 pub trait MakeEnvironment: Send + Sync {
+    fn terms(&self) -> &[f64] {
+        self.task.terms()
+    }
+
     /// A fresh one; `horizon` replaces the task's own.
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment>;
 }

@@ -24,7 +24,7 @@ mod units;
 pub use check_env::{EnvFault, MADE_FROM, check_env};
 pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
 pub use environment::{
-    CommandPort, End, EnvSpec, Environment, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,
+    CommandPort, End, EnvSpec, Environment, MOST_TERMS, MakeEnvironment, Outcome, Plant, Port, Robot, Step, Task,
 };
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Ports};

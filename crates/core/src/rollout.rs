@@ -52,6 +52,9 @@ pub struct EpisodeResult {
     pub end: End,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
+    /// What each named term of the reward came to, where it has some.
+    #[serde(default, with = "crate::bits")]
+    pub terms: Vec<f64>,
 }
 
 /// Which episodes to run, and how.

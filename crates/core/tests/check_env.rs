@@ -101,6 +101,7 @@ impl Point {
             horizon: horizon.unwrap_or(HORIZON),
             time_step: 0.1,
             shaped_by: vec![],
+            terms: vec![],
         };
         match wrong {
             Wrong::Unnamed => spec.observation[1] = port(" "),

@@ -1,6 +1,8 @@
 //! Problems built, and what experiments rely on in them.
 
+use hwasp_core::MOST_TERMS;
 use hwasp_problem::{AnyError, AnyProblem, Built};
+use hwasp_settings::text::{column_fault, shorten};
 use hwasp_settings::{AnySettings, listed};
 
 /// The longest episode, steps.
@@ -10,8 +12,6 @@ pub(crate) const COMMON_KEYS: [&str; 2] = ["problem", "horizon"];
 /// Columns of a learning curve that are not a design group's, the last three in those of earlier versions.
 const COLUMNS: [&str; 8] =
     ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
-/// The longest name of a design group, bytes.
-const LONGEST_NAME: usize = 58;
 /// The most groups of a design: each has a column in learning curves.
 pub const MOST_GROUPS: usize = 64;
 
@@ -39,6 +39,16 @@ pub(crate) fn build(problem: &dyn AnyProblem, settings: &dyn AnySettings) -> Res
     for group in groups {
         check_group(&group.name)?;
     }
+    if env.terms.len() > MOST_TERMS {
+        let found = env.terms.len();
+        return Err(format!("its reward has {found} terms, and learning curves have columns for {MOST_TERMS}").into());
+    }
+    for (i, term) in env.terms.iter().enumerate() {
+        let twice = || env.terms[..i].contains(term).then(|| "another term is called so".to_owned());
+        if let Some(why) = column_fault(term).or_else(twice) {
+            return Err(format!("the term `{}` of its reward cannot be called so: {why}", shorten(term, 60)).into());
+        }
+    }
     let columns: Vec<String> = groups.iter().map(|group| total_name(&group.name, group.count)).collect();
     for (i, column) in columns.iter().enumerate() {
         if let Some(other) = columns[..i].iter().position(|other| other == column) {
@@ -59,13 +69,12 @@ pub fn total_name(group: &str, count: usize) -> String {
 
 /// Whether a design group can name a column of a learning curve.
 fn check_group(name: &str) -> Result<(), AnyError> {
-    let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-    let why = if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
-        format!("use 1 to {LONGEST_NAME} letters, digits, `_` and `-`")
+    let why = if let Some(why) = column_fault(name) {
+        why
     } else if COLUMNS.contains(&name) {
         format!("learning curves have a column of this name, as of {}", listed(COLUMNS))
     } else {
         return Ok(());
     };
-    Err(format!("the design group `{}` cannot be called so: {why}", hwasp_settings::text::shorten(name, 60)).into())
+    Err(format!("the design group `{}` cannot be called so: {why}", shorten(name, 60)).into())
 }

@@ -171,6 +171,7 @@ impl Compiler<'_, '_> {
         env.command.iter_mut().enumerate().for_each(|(i, port)| port.direct = !of_law(i));
         let groups = shaping.iter().flat_map(|shaping: &Shaping| &shaping.parameters);
         env.shaped_by = groups.map(|&i| uniforms[i].clone()).collect();
+        env.terms = terms.iter().map(|(name, _)| name.clone()).collect();
         let derived = |column: &Column| matches!(column, Column::Engine(reading) if reading.is_derived());
         let mut robot = Robot {
             plain: false,
@@ -194,7 +195,6 @@ impl Compiler<'_, '_> {
                 memory: memory.len(),
             },
             kinds: kind_names(settings),
-            terms: terms.into_iter().map(|(name, _)| name).collect(),
             forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
             delays: delays.map(|parts| formula(self, None, numbered(&parts))),
             targets: targets.iter().map(|(_, target, _)| *target).collect(),

@@ -61,6 +61,8 @@ pub(crate) struct ModelEnvironment {
     told: Delay,
     kind: usize,
     success: bool,
+    /// What each term of the reward came to so far.
+    terms: Vec<f64>,
     fault: Option<String>,
 }
 
@@ -94,6 +96,7 @@ impl ModelEnvironment {
             success: false,
             fault: None,
             robot: Arc::clone(robot),
+            terms: vec![0.0; spec.terms.len()],
             spec,
         };
         environment.bind();
@@ -210,6 +213,7 @@ impl ModelEnvironment {
         self.command.fill(0.0);
         // Nothing of the episode before: what comes may follow on any other.
         for (value, column) in self.values.iter_mut().zip(&self.robot.columns) {
+        self.terms.fill(0.0);
             if matches!(column, Column::Memory(_) | Column::Draw(..)) {
                 *value = 0.0;
             }
@@ -330,9 +334,11 @@ impl Environment for ModelEnvironment {
         }
         self.remember();
         let outputs = self.robot.outputs;
-        let terms = &self.step.out[outputs.terms_at()];
-        // From 0, not from -0 as `sum` begins.
-        let reward = terms.iter().fold(0.0, |reward, term| reward + term);
+        let mut reward = 0.0;
+        for (sum, term) in self.terms.iter_mut().zip(&self.step.out[outputs.terms_at()]) {
+            *sum += term;
+            reward += term;
+        }
         let holds = |at: Option<usize>| at.is_some_and(|at| self.step.out[at] != 0.0);
         self.success = holds(outputs.success_at());
         let end = if holds(outputs.ends_at()) {
@@ -352,5 +358,9 @@ impl Environment for ModelEnvironment {
 
     fn fault(&self) -> Option<String> {
         self.fault.clone()
+    fn terms(&self) -> &[f64] {
+        &self.terms
+    }
+
     }
 }

@@ -91,7 +91,6 @@ pub(crate) struct Robot {
     pub(crate) step: Formula,
     pub(crate) outputs: Outputs,
     pub(crate) kinds: Vec<Arc<str>>,
-    pub(crate) terms: Vec<String>,
     /// Bodies that forces act on, with 3 or 6 components.
     pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
     /// Times in s: of the observation, of the command.
@@ -189,7 +188,7 @@ impl Robot {
         if let Some(port) = self.env.observation.get(at) {
             return format!("the observation `{}`", port.name);
         }
-        match self.terms.get(at - outputs.observations) {
+        match self.env.terms.get(at - outputs.observations) {
             Some(term) => format!("the reward `{term}`"),
             None if outputs.ends_at() == Some(at) => "`ends`".to_owned(),
             None if outputs.success_at() == Some(at) => "`success`".to_owned(),

@@ -90,9 +90,16 @@ fn commands_move_and_rewards_add_up() {
         let (here, before) = (place(10.0 * f64::from(step)), place(10.0 * f64::from(step - 1)));
         near(&seen(&*robot), &[here, here - before], 1e-12);
         near(&[result.reward], &[(here - before) / 0.01 - 8.0], 1e-9);
+        // By name: effort, speed.
+        near(robot.terms(), &[-8.0 * f64::from(step), here / 0.01], 1e-9);
         ended = ended.or(result.end.map(|end| (step, end)));
     }
-    assert_eq!(ended, Some((4, End::Terminated)));
+    assert_eq!(
+        (ended, &robot.spec().terms[..]),
+        (Some((4, End::Terminated)), &["effort", "speed"].map(String::from)[..])
+    );
+    begin(&mut *robot, 0);
+    assert_eq!(robot.terms(), [0.0; 2]);
 }
 
 /// The law acts on joints and tendons beside the motors that it leaves alone, and takes the motors that it reads.

@@ -1,6 +1,6 @@
 //! One run as numbers to be drawn, and what they are drawn against.
 
-use hwasp_runs::metrics::MetricsTable;
+use hwasp_runs::metrics::{MetricsTable, TERM};
 use hwasp_training::MetricsRow;
 
 /// The column of the return, whose panel comes first.
@@ -15,6 +15,8 @@ pub struct Curve {
     pub x: Vec<f64>,
     /// Mean discounted return of the training episodes, one per row.
     pub discounted_return: Vec<f64>,
+    /// What each named term of the reward came to in these episodes, with its column name.
+    pub terms: Vec<(String, Vec<f64>)>,
     /// The design totals, each with its column name and one SI value per row.
     pub totals: Vec<(String, Vec<f64>)>,
 }
@@ -30,10 +32,14 @@ impl Curve {
         let total = |(place, name): (usize, &String)| {
             (name.clone(), table.rows.iter().filter_map(|row| row.design_totals.get(place).copied()).collect())
         };
+        let term = |(place, name): (usize, &String)| {
+            (format!("{TERM}{name}"), table.rows.iter().filter_map(|row| row.terms.get(place).copied()).collect())
+        };
         Self {
             label: label.into(),
             x: table.rows.iter().map(x).collect(),
             discounted_return: table.rows.iter().map(|row| row.discounted_return).collect(),
+            terms: table.terms.iter().enumerate().map(term).collect(),
             totals: table.design_totals.iter().enumerate().map(total).collect(),
         }
     }
@@ -42,7 +48,12 @@ impl Curve {
         if name == RETURN {
             return Some(&self.discounted_return);
         }
-        self.totals.iter().find(|total| total.0 == name).map(|total| total.1.as_slice())
+        self.columns().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
+    }
+
+    /// All but the return.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = &(String, Vec<f64>)> {
+        self.totals.iter().chain(&self.terms)
     }
 }
 

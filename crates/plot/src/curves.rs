@@ -1,4 +1,6 @@
-//! Pictures of runs: a panel for the return and one for each design total.
+//! Pictures of runs: a panel for the return and one for each design total and each term of the reward.
+
+use hwasp_runs::metrics::TERM;
 
 use crate::curve::{Curve, RETURN};
 use crate::error::{LONGEST_WINDOW, MOST_PANELS, MOST_RUNS, PlotError};
@@ -7,7 +9,8 @@ use crate::picture::{PanelPlots, Plot};
 use crate::series::{self, Note};
 use crate::{draw, panel};
 
-/// Draws the runs: one panel for the discounted return and one for each design total, one colour per label.
+/// Draws the runs: one panel for the discounted return and one for each design total and each term of the
+/// reward, one colour per label.
 pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> {
     let Drawn { panels, entries, explanation, notes } = Drawn::new(runs, options)?;
     let page = draw::Page { title: &options.title, untitled: "learning curves", explanation, ..draw::Page::default() };
@@ -50,7 +53,7 @@ impl<'r> Drawn<'r> {
                 Some(group) => group.push(run),
                 None => groups.push(vec![run]),
             }
-            for (name, _) in &run.totals {
+            for (name, _) in run.columns() {
                 if !columns.contains(&name.as_str()) {
                     columns.push(name);
                 }
@@ -87,7 +90,8 @@ fn text_of(column: &str, options: &PlotOptions) -> PanelText {
     let given = options.panels.iter().find(|panel| panel.column == column).cloned();
     let mut text = given.unwrap_or_default();
     if text.label.is_empty() {
-        text.label = column.replace('_', " ");
+        let term = column.strip_prefix(TERM).map(|name| format!("reward: {name}"));
+        text.label = term.unwrap_or_else(|| column.to_owned()).replace('_', " ");
     }
     // An optimum that is no number, or dwarfs everything, is no line.
     text.optimum = text.optimum.filter(|value| value.abs() <= series::LARGEST);

@@ -1,6 +1,7 @@
 //! From the rows of runs to what is drawn: bad rows left out, smoothed, runs of one label brought to one grid.
 
 use hwasp_core::Stream;
+use hwasp_runs::metrics::TERM;
 use hwasp_training::stats::{Bootstrap, Interval, LEAST_VALUES, Sample, StatsError};
 use rand::SeedableRng;
 
@@ -23,7 +24,7 @@ pub(super) type Point = (f64, f64);
 pub(super) struct Line {
     /// As logged; empty where nothing is smoothed.
     pub(super) raw: Vec<Point>,
-    /// The trailing mean of a return, a design total as logged.
+    /// The trailing mean of a return or a term of it, a design total as logged.
     pub(super) smooth: Vec<Point>,
 }
 
@@ -116,10 +117,7 @@ impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Panels { left_out } => {
-                write!(
-                    f,
-                    "{left_out} design totals are left out: a picture has {MOST_PANELS} panels; metrics.csv has all"
-                )
+                write!(f, "{left_out} columns are left out: a picture has {MOST_PANELS} panels; metrics.csv has all")
             }
             Self::Skipped { label, series, rows } => {
                 write!(f, "{label}: {series} is drawn without {rows} of its rows (not finite, or out of order)")
@@ -171,7 +169,7 @@ pub(super) fn shape(
             notes.push(Note::Skipped { label, series, rows });
         }
         // A design moves without noise: a trailing mean would only make it late.
-        let noisy = column == RETURN && options.window > 1;
+        let noisy = (column == RETURN || column.starts_with(TERM)) && options.window > 1;
         lines.push(if noisy {
             Line { smooth: trailing_mean(&raw, options.window), raw }
         } else {

@@ -11,6 +11,7 @@ use resvg::{tiny_skia::Pixmap, usvg::roxmltree};
 fn run(label: &str, rows: u32, shift: f64) -> Curve {
     let wave = |i: u32| f64::from(i % 5) * 10.0;
     Curve {
+        terms: vec![],
         label: label.to_owned(),
         x: (1..=rows).map(|i| f64::from(i) * 40_000.0).collect(),
         discounted_return: (0..rows).map(|i| -1100.0 + f64::from(i) * 6.0 + wave(i) + shift).collect(),
@@ -283,7 +284,7 @@ fn more_totals_than_panels_are_left_out() {
     // The return has a panel, too.
     assert_eq!(plot.notes, [Note::Panels { left_out: 7 }]);
     assert!(has_text(&plot.svg, "total 22") && !has_text(&plot.svg, "total 23"), "{:?}", texts(&plot.svg));
-    assert!(plot.notes[0].to_string().starts_with("7 design totals are left out"), "{}", plot.notes[0]);
+    assert!(plot.notes[0].to_string().starts_with("7 columns are left out"), "{}", plot.notes[0]);
 }
 
 #[test]
@@ -295,6 +296,7 @@ fn a_table_becomes_a_curve() {
         discounted_return: -(i as f64),
         undiscounted_return: 0.0,
         learner: vec![],
+        terms: vec![],
         design_totals: vec![5.0, i as f64],
     };
     let design_totals = vec!["a_total".to_owned(), "b_total".to_owned()];

@@ -266,6 +266,7 @@ fn curves(saved: &SavedComparison) -> Markup {
         if x_axis == XAxis::WallClock {
             for run in &mut runs {
                 run.totals.clear();
+                run.terms.clear();
             }
         }
         let asked = saved.comparison.asked();

@@ -8,6 +8,7 @@
 //! | `discounted_return` | mean over this iteration's training episodes | reward |
 //! | `return` | the same, undiscounted | reward |
 //! | one per metric of the learner, such as `learner.kl`; none in a search | what an update did, by the learner's own names | the learner's |
+//! | one per named term of the reward, such as `reward.forward`; none where a search trains its candidates | its sum over an episode, a mean as `return` is | reward |
 //! | one per design total, such as `stiffness_total` | the sum of a design group | SI |
 //!
 //! Tables that were written before learners had names of their own have `kl`, `entropy` and `step_fraction` behind `return`;
@@ -22,16 +23,20 @@ use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
 use error::shorten;
+use hwasp_core::MOST_TERMS;
 use hwasp_experiment::MOST_GROUPS;
 use hwasp_training::MetricsRow;
 use serde::{Deserialize, Serialize};
 
 pub use error::MetricsError;
 
-/// The columns that every table has, in order; the learner's metrics and the design totals follow.
+/// The columns that every table has, in order; the learner's metrics, the terms of the reward and the design totals
+/// follow.
 pub const FIXED_COLUMNS: [&str; 5] = ["iteration", "env_steps", "wall_s", "discounted_return", "return"];
 /// What the column of a learner's metric begins with.
 pub const LEARNER: &str = "learner.";
+/// What the column of a term of the reward begins with.
+pub const TERM: &str = "reward.";
 /// The metrics behind the fixed columns of a table that has no column of a learner's own.
 const EARLIER: [&str; 3] = ["kl", "entropy", "step_fraction"];
 /// The most metrics of a learner in a table.
@@ -41,7 +46,7 @@ pub const MOST_TOTALS: usize = MOST_GROUPS;
 /// The most rows that are read.
 pub const MOST_ROWS: usize = 2_000_000;
 /// The longest line that is read, in bytes.
-pub const LONGEST_LINE: usize = 8192;
+pub const LONGEST_LINE: usize = 16_384;
 /// The longest name of a metric or a design total, in bytes.
 pub const LONGEST_NAME: usize = 64;
 
@@ -50,38 +55,53 @@ pub const LONGEST_NAME: usize = 64;
 pub struct MetricsWriter<W: Write> {
     out: W,
     learner: usize,
+    terms: usize,
     totals: usize,
 }
 
+/// The columns of a table that depend on the experiment.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Columns<'a> {
+    /// The names of the learner's metrics.
+    pub learner: &'a [&'a str],
+    /// The names of the reward's terms.
+    pub terms: &'a [String],
+    /// The names of the design totals.
+    pub totals: &'a [String],
+}
+
 impl<W: Write> MetricsWriter<W> {
-    /// Starts a table with one column for each metric of the learner and each design total, in these orders.
-    pub fn new<L: AsRef<str>, T: AsRef<str>>(out: W, learner: &[L], totals: &[T]) -> Result<Self, MetricsError> {
-        let mut writer = Self::resume(out, learner, totals)?;
-        let learner = learner.iter().map(|name| format!("{LEARNER}{}", name.as_ref()));
-        let names = FIXED_COLUMNS.iter().map(ToString::to_string).chain(learner);
-        let names = names.chain(totals.iter().map(|name| name.as_ref().to_owned()));
+    /// Starts a table with these columns, in their order.
+    pub fn new(out: W, columns: Columns<'_>) -> Result<Self, MetricsError> {
+        let mut writer = Self::resume(out, columns)?;
+        let learner = columns.learner.iter().map(|name| format!("{LEARNER}{name}"));
+        let terms = columns.terms.iter().map(|name| format!("{TERM}{name}"));
+        let names = FIXED_COLUMNS.iter().map(ToString::to_string).chain(learner).chain(terms);
+        let names = names.chain(columns.totals.iter().cloned());
         writer.line(&names.collect::<Vec<_>>().join(","))?;
         Ok(writer)
     }
 
     /// Continues a table that has its header already; `out` stands at its end.
-    pub fn resume<L: AsRef<str>, T: AsRef<str>>(out: W, learner: &[L], totals: &[T]) -> Result<Self, MetricsError> {
-        check_columns(learner, totals)?;
-        Ok(Self { out, learner: learner.len(), totals: totals.len() })
+    pub fn resume(out: W, columns: Columns<'_>) -> Result<Self, MetricsError> {
+        let Columns { learner, terms, totals } = columns;
+        check_columns(learner, terms, totals)?;
+        Ok(Self { out, learner: learner.len(), terms: terms.len(), totals: totals.len() })
     }
 
-    /// Appends one row. Its metrics and design totals must be as many as the table has; the error names line 0, where nothing
-    /// has been written.
+    /// Appends one row. Its metrics, terms and design totals must be as many as the table has; the error names line 0, where
+    /// nothing has been written.
     pub fn append(&mut self, row: &MetricsRow) -> Result<(), MetricsError> {
-        if (row.learner.len(), row.design_totals.len()) != (self.learner, self.totals) {
-            let fixed = FIXED_COLUMNS.len();
-            let (found, expected) =
-                (fixed + row.learner.len() + row.design_totals.len(), fixed + self.learner + self.totals);
+        let found = [row.learner.len(), row.terms.len(), row.design_totals.len()];
+        let expected = [self.learner, self.terms, self.totals];
+        if found != expected {
+            let all = |counts: [usize; 3]| FIXED_COLUMNS.len() + counts.iter().sum::<usize>();
+            let (found, expected) = (all(found), all(expected));
             return Err(MetricsError::Fields { line: 0, found, expected });
         }
         let mut text = format!("{},{}", row.iteration, row.env_steps);
         let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
-        for value in fixed.iter().chain(&row.learner).chain(&row.design_totals) {
+        for value in fixed.iter().chain(&row.learner).chain(&row.terms).chain(&row.design_totals) {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let _ = write!(text, ",{value:?}");
         }
@@ -114,6 +134,9 @@ impl<W: Write> MetricsWriter<W> {
 pub struct MetricsTable {
     /// The names of the learner's metrics, in the order of the rows' `learner`.
     pub learner: Vec<String>,
+    /// The names of the reward's terms, in the order of the rows' `terms`.
+    #[serde(default)]
+    pub terms: Vec<String>,
     /// The names of the design totals, in the order of the rows' `design_totals`.
     pub design_totals: Vec<String>,
     /// The rows in order; `env_steps` never falls.
@@ -133,8 +156,7 @@ impl MetricsTable {
     /// Reads the rows before an iteration, and nothing of what comes behind the last of them.
     pub fn read_before(input: impl io::Read, iteration: u64) -> Result<Self, MetricsError> {
         let mut lines = Lines { input: io::BufReader::new(input), number: 0, unfinished: None, buffer: Vec::new() };
-        let (learner, design_totals) = read_header(lines.next()?.unwrap_or(""))?;
-        let mut table = Self { learner, design_totals, ..Self::default() };
+        let mut table = read_header(lines.next()?.unwrap_or(""))?;
         let mut before = 0;
         while table.rows.last().map_or(0, |row| row.iteration.saturating_add(1)) < iteration {
             let Some(text) = lines.next()? else { break };
@@ -161,31 +183,42 @@ impl MetricsTable {
         Some(self.rows.iter().map(move |row| row.learner[place]))
     }
 
-    /// The rows with the metrics of these names, in their order, NaN where the table does not have one: those of a table that
-    /// another version of a learner wrote.
-    pub(crate) fn rows_with<L: AsRef<str>>(self, learner: &[L]) -> Vec<MetricsRow> {
-        let place = |name: &L| self.learner.iter().position(|known| known == name.as_ref());
-        let places: Vec<Option<usize>> = learner.iter().map(place).collect();
+    /// The rows with the metrics and terms of these columns, in their order, NaN where the table does not have one: those of a
+    /// table that another version wrote.
+    pub(crate) fn rows_with(self, columns: Columns<'_>) -> Vec<MetricsRow> {
+        let (learner, terms) = (places(&self.learner, columns.learner), places(&self.terms, columns.terms));
+        let pick = |from: &[f64], places: &[Option<usize>]| {
+            places.iter().map(|place| place.map_or(f64::NAN, |place| from[place])).collect()
+        };
         let mut rows = self.rows;
         for row in &mut rows {
-            row.learner = places.iter().map(|place| place.map_or(f64::NAN, |place| row.learner[place])).collect();
+            (row.learner, row.terms) = (pick(&row.learner, &learner), pick(&row.terms, &terms));
         }
         rows
     }
 }
 
+/// Where wanted names are among those that there are.
+fn places<S: AsRef<str>>(known: &[String], wanted: &[S]) -> Vec<Option<usize>> {
+    wanted.iter().map(|name| known.iter().position(|known| known == name.as_ref())).collect()
+}
+
 /// Whether there are not too many columns, and each has a name that comes back.
-fn check_columns<L: AsRef<str>, T: AsRef<str>>(learner: &[L], totals: &[T]) -> Result<(), MetricsError> {
-    for (what, found, most) in
-        [("metrics of a learner", learner.len(), MOST_METRICS), ("design totals", totals.len(), MOST_TOTALS)]
-    {
+fn check_columns<L: AsRef<str>>(learner: &[L], terms: &[String], totals: &[String]) -> Result<(), MetricsError> {
+    for (what, found, most) in [
+        ("metrics of a learner", learner.len(), MOST_METRICS),
+        ("terms of a reward", terms.len(), MOST_TERMS),
+        ("design totals", totals.len(), MOST_TOTALS),
+    ] {
         if found > most {
             return Err(MetricsError::Columns { what, found, most });
         }
     }
     check_names(learner, |name| FIXED_COLUMNS.contains(&name))?;
+    check_names(terms, |_| false)?;
     // Those of earlier tables are not free either: a damaged header would be read as one of other columns.
-    let taken = |name: &str| FIXED_COLUMNS.contains(&name) || EARLIER.contains(&name) || name.starts_with(LEARNER);
+    let of_others = |name: &str| name.starts_with(LEARNER) || name.starts_with(TERM);
+    let taken = |name: &str| FIXED_COLUMNS.contains(&name) || EARLIER.contains(&name) || of_others(name);
     check_names(totals, taken)
 }
 
@@ -200,8 +233,8 @@ fn check_names<S: AsRef<str>>(names: &[S], taken: impl Fn(&str) -> bool) -> Resu
     Ok(())
 }
 
-/// The names of the learner's metrics and of the design totals.
-fn read_header(text: &str) -> Result<(Vec<String>, Vec<String>), MetricsError> {
+/// A table without rows that has the columns of this header.
+fn read_header(text: &str) -> Result<MetricsTable, MetricsError> {
     // A table saved by a spreadsheet may begin with a byte-order mark.
     let names: Vec<&str> = text.trim_start_matches('\u{feff}').split(',').collect();
     for (place, expected) in FIXED_COLUMNS.into_iter().enumerate() {
@@ -211,20 +244,22 @@ fn read_header(text: &str) -> Result<(Vec<String>, Vec<String>), MetricsError> {
         }
     }
     let rest = &names[FIXED_COLUMNS.len()..];
-    let (learner, totals) = if rest.starts_with(&EARLIER) {
-        (EARLIER.map(str::to_owned).to_vec(), &rest[EARLIER.len()..])
-    } else {
-        let own: Vec<String> = rest.iter().map_while(|name| name.strip_prefix(LEARNER)).map(str::to_owned).collect();
-        let totals = &rest[own.len()..];
-        (own, totals)
+    let those_of = |prefix: &str, names: &[&str]| -> Vec<String> {
+        names.iter().map_while(|name| name.strip_prefix(prefix)).map(str::to_owned).collect()
     };
-    check_columns(&learner, totals)?;
-    Ok((learner, totals.iter().map(|&name| name.to_owned()).collect()))
+    let earlier = rest.starts_with(&EARLIER);
+    let learner = if earlier { EARLIER.map(str::to_owned).to_vec() } else { those_of(LEARNER, rest) };
+    let rest = &rest[learner.len()..];
+    let terms = those_of(TERM, rest);
+    let design_totals: Vec<String> = rest[terms.len()..].iter().map(|&name| name.to_owned()).collect();
+    check_columns(&learner, &terms, &design_totals)?;
+    Ok(MetricsTable { learner, terms, design_totals, ..MetricsTable::default() })
 }
 
 /// Reads one row; the errors name line 0 until [`MetricsError::at`] says which it was.
 fn read_row(text: &str, table: &MetricsTable) -> Result<MetricsRow, MetricsError> {
-    let names = FIXED_COLUMNS.into_iter().chain(table.learner.iter().chain(&table.design_totals).map(String::as_str));
+    let own = table.learner.iter().chain(&table.terms).chain(&table.design_totals);
+    let names = FIXED_COLUMNS.into_iter().chain(own.map(String::as_str));
     let (found, expected) = (text.split(',').count(), names.clone().count());
     if found != expected {
         return Err(MetricsError::Fields { line: 0, found, expected });
@@ -255,6 +290,7 @@ fn read_row(text: &str, table: &MetricsTable) -> Result<MetricsRow, MetricsError
         discounted_return: real()?,
         undiscounted_return: real()?,
         learner: table.learner.iter().map(|_| real()).collect::<Result<_, _>>()?,
+        terms: table.terms.iter().map(|_| real()).collect::<Result<_, _>>()?,
         design_totals: table.design_totals.iter().map(|_| real()).collect::<Result<_, _>>()?,
     })
 }

@@ -118,9 +118,10 @@ impl TensorBoard {
 impl Observer for TensorBoard {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         let written = match event {
-            Event::Started { learner, totals, resumed, .. } => {
+            Event::Started { learner, terms, totals, resumed, .. } => {
                 let learner = learner.iter().map(|name| format!("train/{name}"));
-                self.tags = learner.chain(totals.iter().map(|name| format!("design/{name}"))).collect();
+                let terms = terms.iter().map(|name| format!("reward/{name}"));
+                self.tags = learner.chain(terms).chain(totals.iter().map(|name| format!("design/{name}"))).collect();
                 let now = self.tick();
                 // A training that was killed before its first checkpoint is not resumed, it begins anew; its points are there.
                 match resumed.map(|env_steps| env_steps + 1).or(self.has_older.then_some(0)) {
@@ -133,7 +134,7 @@ impl Observer for TensorBoard {
                 let train =
                     [("train/return", row.undiscounted_return), ("train/discounted_return", row.discounted_return)];
                 let tags = self.tags.clone();
-                let values = row.learner.iter().chain(&row.design_totals).copied();
+                let values = row.learner.iter().chain(&row.terms).chain(&row.design_totals).copied();
                 self.scalars(train.into_iter().chain(tags.iter().map(String::as_str).zip(values)))
             }
             Event::Evaluated(evaluation) => self.scalars(

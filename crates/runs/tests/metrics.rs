@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use hwasp_runs::metrics::{FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter};
+use hwasp_runs::metrics::{Columns, FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter};
 use hwasp_training::MetricsRow;
 
-fn row(iteration: u64, values: [f64; 8]) -> MetricsRow {
+fn row(iteration: u64, values: [f64; 9]) -> MetricsRow {
     MetricsRow {
         iteration,
         env_steps: 4000 * (iteration + 1),
@@ -13,17 +13,25 @@ fn row(iteration: u64, values: [f64; 8]) -> MetricsRow {
         discounted_return: values[1],
         undiscounted_return: values[2],
         learner: values[3..6].to_vec(),
-        design_totals: values[6..].to_vec(),
+        terms: values[6..7].to_vec(),
+        design_totals: values[7..].to_vec(),
     }
 }
 
-/// Of a search.
-const NONE: [&str; 0] = [];
 /// Of a learner.
 const LEARNER: [&str; 3] = ["kl", "entropy", "grad.norm"];
 
+fn names(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+/// A table of these columns.
+fn table(learner: &[&str], terms: &[&str], totals: &[&str]) -> Result<MetricsWriter<Vec<u8>>, MetricsError> {
+    MetricsWriter::new(Vec::new(), Columns { learner, terms: &names(terms), totals: &names(totals) })
+}
+
 fn written(rows: &[MetricsRow]) -> Vec<u8> {
-    let mut writer = MetricsWriter::new(Vec::new(), &LEARNER, &["stiffness_total", "length_total"]).unwrap();
+    let mut writer = table(&LEARNER, &["forward"], &["stiffness_total", "length_total"]).unwrap();
     for row in rows {
         writer.append(row).unwrap();
     }
@@ -52,16 +60,18 @@ fn message(body: &str) -> String {
 
 fn bits(row: &MetricsRow) -> Vec<u64> {
     let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
-    fixed.iter().chain(&row.learner).chain(&row.design_totals).map(|v| v.to_bits()).collect()
+    fixed.iter().chain(&row.learner).chain(&row.terms).chain(&row.design_totals).map(|v| v.to_bits()).collect()
 }
 
 #[test]
 fn numbers_come_back_with_their_bits() {
-    let hard = [0.1 + 0.2, -1.0 / 3.0, 1e300, 5e-324, -0.0, f64::MAX, 0.64, 19.6];
-    let odd = [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, f64::MIN, 0.0, 2f64.powi(60)];
+    let hard = [0.1 + 0.2, -1.0 / 3.0, 1e300, 5e-324, -0.0, f64::MAX, -2e-308, 0.64, 19.6];
+    let odd =
+        [f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, 1e-7, 123_456_789.0, f64::MIN, 1.5, 0.0, 2f64.powi(60)];
     let rows = [row(0, hard), row(1, odd), row(u64::MAX / 4001 - 2, hard)];
     let table = read(written(&rows)).unwrap();
     assert_eq!(table.learner, LEARNER);
+    assert_eq!(table.terms, ["forward"]);
     assert_eq!(table.design_totals, ["stiffness_total", "length_total"]);
     assert_eq!(table.metric("entropy").unwrap().collect::<Vec<_>>(), [-0.0, 123_456_789.0, -0.0]);
     assert_eq!(table.unfinished_line, None);
@@ -74,28 +84,29 @@ fn numbers_come_back_with_their_bits() {
 
 #[test]
 fn the_text_is_plain_and_short() {
-    let text =
-        String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 0.8, 65.5, 1e-9])])).unwrap();
+    let text = String::from_utf8(written(&[row(0, [0.5, -1125.53, -10_811.25, f64::NAN, 3.0, 0.8, 12.5, 65.5, 1e-9])]))
+        .unwrap();
     assert_eq!(
         text,
-        "iteration,env_steps,wall_s,discounted_return,return,learner.kl,learner.entropy,learner.grad.norm,stiffness_total,length_total\n\
-         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,65.5,1e-9\n"
+        "iteration,env_steps,wall_s,discounted_return,return,learner.kl,learner.entropy,learner.grad.norm,reward.forward,stiffness_total,length_total\n\
+         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,12.5,65.5,1e-9\n"
     );
     assert!(read(text).unwrap().rows[0].learner[0].is_nan());
 }
 
 #[test]
 fn a_table_can_be_continued() {
-    let names = ["stiffness_total", "length_total"];
-    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 8])]), &LEARNER, &names).unwrap();
-    writer.append(&row(1, [1.0; 8])).unwrap();
-    assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 8]), row(1, [1.0; 8])]));
+    let (terms, totals) = (names(&["forward"]), names(&["stiffness_total", "length_total"]));
+    let columns = Columns { learner: &LEARNER, terms: &terms, totals: &totals };
+    let mut writer = MetricsWriter::resume(written(&[row(0, [0.0; 9])]), columns).unwrap();
+    writer.append(&row(1, [1.0; 9])).unwrap();
+    assert_eq!(writer.into_inner(), written(&[row(0, [0.0; 9]), row(1, [1.0; 9])]));
 }
 
 /// A run that was killed in the middle of a row must not lend the plot a number cut short.
 #[test]
 fn an_unfinished_line_is_left_out_and_reported() {
-    let mut text = written(&[row(0, [1.0; 8]), row(1, [12.5; 8])]);
+    let mut text = written(&[row(0, [1.0; 9]), row(1, [12.5; 9])]);
     text.truncate(text.len() - 2);
     let table = read(text).unwrap();
     assert_eq!((table.rows.len(), table.unfinished_line), (1, Some(3)));
@@ -163,30 +174,34 @@ fn rows_without_end_are_refused() {
 #[test]
 fn names_that_break_a_header_are_refused() {
     let long = "x".repeat(65);
-    for name in ["", "a,b", "a\nb", "\"a\"", "return", "entropy", "learner.kl", " a", &long] {
-        assert!(matches!(MetricsWriter::new(Vec::new(), &NONE, &[name]), Err(MetricsError::Name { .. })), "{name}");
+    for name in ["", "a,b", "a\nb", "\"a\"", "return", "entropy", "learner.kl", "reward.alive", " a", &long] {
+        assert!(matches!(table(&[], &[], &[name]), Err(MetricsError::Name { .. })), "{name}");
         let text = format!("{},{name}\n", FIXED_COLUMNS.join(","));
-        assert!(["a,b", "learner.kl"].contains(&name) || read(text).is_err(), "{name}");
+        assert!(["a,b", "learner.kl", "reward.alive"].contains(&name) || read(text).is_err(), "{name}");
     }
-    for name in ["", "a,b", "a\nb", "return", " a", &long] {
-        assert!(matches!(MetricsWriter::new(Vec::new(), &[name], &NONE), Err(MetricsError::Name { .. })), "{name}");
+    for name in ["", "a,b", "a\nb", " a", &long] {
+        assert!(matches!(table(&[name], &[], &[]), Err(MetricsError::Name { .. })), "{name}");
+        assert!(matches!(table(&[], &[name], &[]), Err(MetricsError::Name { .. })), "{name}");
     }
-    assert!(matches!(MetricsWriter::new(Vec::new(), &NONE, &["a", "a"]), Err(MetricsError::Name { .. })));
+    assert!(matches!(table(&["return"], &[], &[]), Err(MetricsError::Name { .. })));
+    assert!(matches!(table(&[], &[], &["a", "a"]), Err(MetricsError::Name { .. })));
     let many: Vec<String> = (0..65).map(|i| format!("total_{i}")).collect();
-    let error = MetricsWriter::new(Vec::new(), &NONE, &many).unwrap_err().to_string();
-    assert_eq!(error, "65 design totals are more than 64");
-    let error = MetricsWriter::new(Vec::new(), &many[..33], &NONE).unwrap_err().to_string();
-    assert_eq!(error, "33 metrics of a learner are more than 32");
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    let error = |table: Result<MetricsWriter<Vec<u8>>, MetricsError>| table.unwrap_err().to_string();
+    assert_eq!(error(table(&[], &[], &many)), "65 design totals are more than 64");
+    assert_eq!(error(table(&many[..33], &[], &[])), "33 metrics of a learner are more than 32");
+    assert_eq!(error(table(&[], &many[..33], &[])), "33 terms of a reward are more than 32");
     // The longest header that there can be is no longer than a line may be.
-    let long = |count: usize| (0..count).map(|i| format!("{i:0>64}")).collect::<Vec<_>>();
-    let widest = MetricsWriter::new(Vec::new(), &long(32), &long(64)).unwrap().into_inner();
+    let long: Vec<String> = (0..64).map(|i| format!("{i:0>64}")).collect();
+    let long: Vec<&str> = long.iter().map(String::as_str).collect();
+    let widest = table(&long[..32], &long[..32], &long).unwrap().into_inner();
     assert_eq!(read(widest).unwrap().design_totals.len(), 64);
 }
 
 #[test]
 fn a_row_of_another_table_is_not_written() {
-    let mut writer = MetricsWriter::new(Vec::new(), &LEARNER, &["stiffness_total"]).unwrap();
-    assert!(matches!(writer.append(&row(0, [0.0; 8])), Err(MetricsError::Fields { found: 10, expected: 9, .. })));
+    let mut writer = table(&LEARNER, &[], &["stiffness_total"]).unwrap();
+    assert!(matches!(writer.append(&row(0, [0.0; 9])), Err(MetricsError::Fields { found: 11, expected: 9, .. })));
     assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), header());
 }
 
@@ -209,7 +224,7 @@ fn tables_of_earlier_versions_are_read() {
 /// What a search writes has no column of a learner.
 #[test]
 fn a_search_has_no_metrics_of_a_learner() {
-    let writer = MetricsWriter::new(Vec::new(), &NONE, &["gear"]).unwrap();
+    let writer = table(&[], &[], &["gear"]).unwrap();
     assert_eq!(
         String::from_utf8(writer.into_inner()).unwrap(),
         "iteration,env_steps,wall_s,discounted_return,return,gear\n"

@@ -151,7 +151,8 @@ fn a_training_can_be_read_back() {
 fn what_is_not_finite_is_left_out() {
     let mut board = TensorBoard::create(&empty("unknown")).unwrap();
     let totals = ["gear".to_owned()];
-    board.on(Event::Started { env_steps: 10, resumed: None, learner: &["kl", "entropy"], totals: &totals }).unwrap();
+    let (learner, terms) = (&["kl", "entropy"], &["alive".to_owned()]);
+    board.on(Event::Started { env_steps: 10, resumed: None, learner, terms, totals: &totals }).unwrap();
     let mut row = MetricsRow {
         iteration: 0,
         env_steps: 5,
@@ -159,15 +160,17 @@ fn what_is_not_finite_is_left_out() {
         discounted_return: f64::NAN,
         undiscounted_return: -1.5,
         learner: vec![f64::INFINITY, 0.5],
+        terms: vec![7.0],
         design_totals: vec![f64::NEG_INFINITY],
     };
     board.on(Event::Iteration(&row)).unwrap();
-    (row.undiscounted_return, row.learner[1]) = (f64::NAN, 1e300);
+    (row.undiscounted_return, row.learner[1], row.terms[0]) = (f64::NAN, 1e300, f64::NAN);
     board.on(Event::Iteration(&row)).unwrap();
     let file = fs::read(board.path()).unwrap();
     let records = records(&file);
     assert_eq!(records.len(), 2);
-    assert_eq!(scalars(records[1]), (5, vec![("train/return".into(), -1.5), ("train/entropy".into(), 0.5)]));
+    let known = [("train/return", -1.5), ("train/entropy", 0.5), ("reward/alive", 7.0)];
+    assert_eq!(scalars(records[1]), (5, known.map(|(tag, value)| (tag.to_owned(), value)).to_vec()));
 }
 
 #[test]
@@ -186,7 +189,7 @@ fn a_resumed_training_says_where_it_goes_on() {
     let first = TensorBoard::create(&folder).unwrap();
     let mut board = TensorBoard::create(&folder).unwrap();
     assert!(first.path() < board.path(), "files are read in the order of their names");
-    board.on(Event::Started { env_steps: 10, resumed: Some(5), learner: &[], totals: &[] }).unwrap();
+    board.on(Event::Started { env_steps: 10, resumed: Some(5), learner: &[], terms: &[], totals: &[] }).unwrap();
     let file = fs::read(board.path()).unwrap();
     let records = records(&file);
     assert_eq!(records.len(), 2);

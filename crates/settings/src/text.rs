@@ -25,6 +25,16 @@ pub fn shorten(text: &str, most: usize) -> String {
     out
 }
 
+/// The longest name of what has a column in a learning curve, bytes.
+const LONGEST_COLUMN: usize = 58;
+
+/// Why what is called so cannot have a column in a learning curve; none where it can.
+pub fn column_fault(name: &str) -> Option<String> {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+    let sound = !name.is_empty() && name.len() <= LONGEST_COLUMN && name.chars().all(plain);
+    (!sound).then(|| format!("use 1 to {LONGEST_COLUMN} letters, digits, `_` and `-`"))
+}
+
 /// A number for a message or a file: plain where that is readable, in powers of ten where it is not. It is read back to the
 /// same bits.
 pub fn show(value: f64) -> String {

@@ -248,6 +248,7 @@ mod tests {
             discounted_return,
             undiscounted_return: 0.0,
             learner: vec![],
+            terms: vec![],
             design_totals: vec![],
         };
         MetricsTable { rows: rows.iter().enumerate().map(row).collect(), ..MetricsTable::default() }

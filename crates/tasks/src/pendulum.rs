@@ -230,6 +230,7 @@ impl Task for SwingUp {
             horizon: self.horizon,
             time_step: TIME_STEP,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

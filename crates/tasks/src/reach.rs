@@ -202,6 +202,7 @@ impl Task for ReachTask {
             horizon: self.horizon,
             time_step: self.time_step,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

@@ -77,6 +77,7 @@ impl Task for Deliver {
             horizon: 150,
             time_step: DT,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

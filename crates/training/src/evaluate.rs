@@ -61,7 +61,8 @@ fn evaluate_at(
     asked: (u64, u64),
 ) -> Result<Evaluation, EvaluateError> {
     let experiment = ExperimentText::of(assembly.experiment())?;
-    Ok(Evaluation::new(&rollouts(collector, assembly, experiment, stage, params, asked)?, asked)?)
+    let results = rollouts(collector, assembly, experiment, stage, params, asked)?;
+    Ok(Evaluation::new(&results, &assembly.worlds.deployment.env.terms, asked)?)
 }
 
 /// Evaluates the controller in `params` on a given design in a given world of the same problem, which only this process has.
@@ -76,7 +77,8 @@ pub fn evaluate_in(
     let (episodes, seed) = asked;
     let (sampler, controller) = (sampler(assembly, world, design)?, assembly.policy.controller_params(params));
     let discount = assembly.experiment().discount();
-    Ok(Evaluation::new(&sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), discount)?, asked)?)
+    let results = sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), discount)?;
+    Ok(Evaluation::new(&results, &world.env.terms, asked)?)
 }
 
 /// What the episodes of an evaluation come to, by index; the error where the physics failed. Their rows are not kept, so that

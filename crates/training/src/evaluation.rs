@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use crate::assemble::AssembleError;
 use crate::collect::{CollectError, EpisodeAnswer};
+use crate::returns::mean_terms;
 use crate::stats::{Interval, Sample, StatsError, bootstrap_interval, wilson};
 
 /// Why there is no evaluation.
@@ -92,6 +93,9 @@ pub struct Evaluation {
     /// The share of episodes that succeeded, over all and for each kind, for tasks that know success.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub success: Vec<SuccessRate>,
+    /// What each named term of the reward came to in an episode, on average; they add up to the return.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub terms: BTreeMap<String, f64>,
 }
 
 /// How many episodes of a kind succeeded.
@@ -143,12 +147,17 @@ fn success_rates(results: &[EpisodeAnswer]) -> Vec<SuccessRate> {
 }
 
 impl Evaluation {
-    /// What the episodes come to.
-    pub(crate) fn new(results: &[EpisodeAnswer], (episodes, seed): (u64, u64)) -> Result<Self, StatsError> {
+    /// What the episodes come to, whose reward has these terms.
+    pub(crate) fn new(
+        results: &[EpisodeAnswer],
+        terms: &[String],
+        (episodes, seed): (u64, u64),
+    ) -> Result<Self, StatsError> {
         let returns = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).collect::<Vec<_>>();
         let discounted = returns(|e| e.discounted_return);
         let mut stream = Stream::seed_from_u64(seed);
         let sample = Sample::new(&discounted)?;
+        let of_terms: Vec<&[f64]> = results.iter().flatten().map(|e| &*e.terms).collect();
         Ok(Self {
             episodes,
             seed,
@@ -158,6 +167,7 @@ impl Evaluation {
             worst_discounted_return: sample.min(),
             discarded_episodes: results.iter().filter(|result| result.is_err()).count() as u64,
             success: success_rates(results),
+            terms: terms.iter().cloned().zip(mean_terms(&of_terms)).collect(),
         })
     }
 }

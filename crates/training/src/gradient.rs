@@ -12,6 +12,7 @@ use crate::collect::{Collector, EpisodesRequest, ExperimentText, Stage};
 use crate::error::TrainError;
 use crate::learned::{Clock, Learned, LoopContext};
 use crate::observer::{Event, FailedIteration};
+use crate::returns::{Returns, mean_terms};
 use crate::running::Running;
 
 /// Iterations in a row in which the physics of most episodes may fail.
@@ -45,6 +46,7 @@ pub(crate) fn gradient(
         env_steps: budget,
         resumed: from.map(|_| state.learned.env_steps),
         learner: state.learner.metric_names(),
+        terms: run.terms,
         totals: &assembly.total_names(),
     })?;
     run.clock = Clock::start(state.learned.wall_s);
@@ -209,24 +211,19 @@ impl<'a> Gradient<'a> {
     }
 }
 
-/// The mean discounted and undiscounted returns of a batch's episodes.
-fn mean_returns(batch: &Batch, discount: f64) -> (f64, f64) {
-    let mean = |returns: Vec<f64>| returns.iter().sum::<f64>() / returns.len().max(1) as f64;
-    (mean(batch.returns(discount)), mean(batch.returns(1.0)))
-}
-
-/// The same of those that came to an end of their own; none where there is no such episode.
-fn whole_returns(batch: &Batch, discount: f64) -> Option<(f64, f64)> {
-    let cut = batch.episodes.iter().filter(|episode| episode.cut).count();
-    if cut == 0 {
-        return Some(mean_returns(batch, discount));
-    }
-    let whole = (batch.episodes.len() - cut) as f64;
+/// What the episodes of a batch came to that ended by themselves; none where there is no such episode.
+fn whole_returns(batch: &Batch, discount: f64) -> Option<Returns> {
+    let whole = || batch.episodes.iter().filter(|episode| !episode.cut);
+    let count = whole().count() as f64;
     let mean = |returns: Vec<f64>| {
         let whole_ones = returns.iter().zip(&batch.episodes).filter(|(_, episode)| !episode.cut);
-        whole_ones.map(|(total, _)| total).sum::<f64>() / whole
+        whole_ones.map(|(total, _)| total).sum::<f64>() / count
     };
-    (whole > 0.0).then(|| (mean(batch.returns(discount)), mean(batch.returns(1.0))))
+    (count > 0.0).then(|| Returns {
+        discounted: mean(batch.returns(discount)),
+        undiscounted: mean(batch.returns(1.0)),
+        terms: mean_terms(&whole().map(|episode| &*episode.terms).collect::<Vec<_>>()),
+    })
 }
 
 /// The iteration that follows a state once more: its batch, where it came so far, and what the update said.

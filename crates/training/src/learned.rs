@@ -10,6 +10,7 @@ use crate::checkpoint::Checkpoint;
 use crate::collect::{Collector, ExperimentText};
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
+use crate::returns::Returns;
 
 /// Iterations over which the final training return is averaged, as the paper's curves are.
 pub const TRAILING: usize = 11;
@@ -26,6 +27,8 @@ pub(crate) struct LoopContext<'a> {
     /// Whether someone wants it to end.
     pub(crate) stopped: &'a (dyn Fn() -> bool + Sync),
     pub(crate) clock: Clock,
+    /// The terms of the reward that rows tell.
+    pub(crate) terms: &'a [String],
 }
 
 /// The time that a training has taken.
@@ -72,13 +75,15 @@ impl Learned {
     /// are no returns where no episode came to its end.
     pub(crate) fn record(
         &mut self,
-        returns: Option<(f64, f64)>,
+        returns: Option<Returns>,
         learner: Vec<f64>,
         design_totals: Vec<f64>,
         run: &mut LoopContext<'_>,
     ) -> Result<(), ObserverError> {
-        self.recent.extend(returns);
-        let (discounted_return, undiscounted_return) = returns.unwrap_or((f64::NAN, f64::NAN));
+        self.recent.extend(returns.as_ref().map(|returns| (returns.discounted, returns.undiscounted)));
+        let none = Returns { discounted: f64::NAN, undiscounted: f64::NAN, terms: Vec::new() };
+        let Returns { discounted, undiscounted, mut terms } = returns.unwrap_or(none);
+        terms.resize(run.terms.len(), f64::NAN);
         if self.recent.len() > TRAILING {
             self.recent.pop_front();
         }
@@ -87,9 +92,10 @@ impl Learned {
             iteration: self.iterations,
             env_steps: self.env_steps,
             wall_s: self.wall_s,
-            discounted_return,
-            undiscounted_return,
+            discounted_return: discounted,
+            undiscounted_return: undiscounted,
             learner,
+            terms,
             design_totals,
         }))?;
         self.iterations += 1;

@@ -18,6 +18,7 @@ mod machine;
 mod metrics;
 mod observer;
 mod paired;
+mod returns;
 mod running;
 mod search;
 pub mod stats;

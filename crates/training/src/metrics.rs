@@ -22,6 +22,10 @@ pub struct MetricsRow {
     /// One per metric of the learner, in the order of their names ([`Event::Started`](crate::Event)); none in a search.
     #[serde(with = "bits")]
     pub learner: Vec<f64>,
+    /// What each named term of the reward came to in these episodes, on average, in the order of the names; they add up to the
+    /// undiscounted return.
+    #[serde(default, with = "bits")]
+    pub terms: Vec<f64>,
     /// One per design total of the table, in its order, SI.
     #[serde(with = "bits")]
     pub design_totals: Vec<f64>,

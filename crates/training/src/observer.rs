@@ -17,6 +17,8 @@ pub enum Event<'a> {
         resumed: Option<u64>,
         /// The names of the learner's metrics; none in a search.
         learner: &'a [&'a str],
+        /// The names of the reward's terms; none where it has none, or where candidates of a search are trained.
+        terms: &'a [String],
         /// The names of the design totals.
         totals: &'a [String],
     },

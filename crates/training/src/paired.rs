@@ -41,6 +41,11 @@ pub struct Reference<'a> {
     trials: Vec<Option<Trial>>,
 }
 
+/// The names of the reward's terms.
+fn terms(assembly: &Assembly) -> &[String] {
+    &assembly.worlds.deployment.env.terms
+}
+
 impl<'a> Reference<'a> {
     /// The controller in `params` on the hardware of `design`, SI.
     pub fn new(
@@ -64,7 +69,7 @@ impl<'a> Reference<'a> {
         let experiment = ExperimentText::of(assembly.experiment())?;
         let stage = Stage::Deployment(design.to_vec());
         let results = rollouts(&*collector, assembly, experiment.clone(), stage, params, asked)?;
-        let (evaluation, trials) = (Evaluation::new(&results, asked)?, trials(&results));
+        let (evaluation, trials) = (Evaluation::new(&results, terms(assembly), asked)?, trials(&results));
         Ok(Self { assembly, experiment, asked, collector, evaluation, trials })
     }
 
@@ -74,7 +79,7 @@ impl<'a> Reference<'a> {
         let experiment = self.experiment.clone();
         let results = rollouts(&*self.collector, self.assembly, experiment, stage, params, self.asked)?;
         let change = Change::between(&self.trials, &trials(&results), self.asked.1)?;
-        Ok((Evaluation::new(&results, self.asked)?, change))
+        Ok((Evaluation::new(&results, terms(self.assembly), self.asked)?, change))
     }
 }
 

@@ -103,6 +103,7 @@ mod tests {
             context: vec![],
             log_prob: 0.0,
             outcome: None,
+            terms: vec![],
         }
     }
 

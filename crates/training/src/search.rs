@@ -13,6 +13,7 @@ use crate::assemble::{Assembly, FINAL_EPISODES};
 use crate::error::TrainError;
 use crate::learned::{Clock, Learned, LoopContext};
 use crate::observer::Event;
+use crate::returns::Returns;
 
 /// Searches until the budget does not hold another generation, from the beginning or from where a search was interrupted.
 pub(crate) fn search(
@@ -27,6 +28,7 @@ pub(crate) fn search(
         env_steps: spec.train.env_steps,
         resumed: from.map(|_| state.learned.env_steps),
         learner: &[],
+        terms: run.terms,
         totals: &assembly.total_names(),
     })?;
     run.clock = Clock::start(state.learned.wall_s);
@@ -73,16 +75,16 @@ fn tell(
     learned.failed_candidates += note_failures(learned, &scored, generation)?;
     let scores: Vec<f64> = scored.iter().map(|s| space.score(s)).collect();
     state.search.tell(&scores)?;
-    let sound: Vec<(f64, f64)> = scored.iter().filter_map(|s| s.returns).collect();
+    let sound: Vec<&Returns> = scored.iter().filter_map(|candidate| candidate.returns.as_ref()).collect();
+    let returns = Returns::mean(&sound);
     for (candidate, score) in scored.into_iter().zip(scores) {
         if state.best.as_ref().is_none_or(|(most, _)| score > *most) {
             state.best = Some((score, candidate.params));
         }
     }
-    let mean = |pick: fn(&(f64, f64)) -> f64| sound.iter().map(pick).sum::<f64>() / sound.len() as f64;
     let policy = &space.assembly.policy;
     let totals = policy.space().totals(&policy.design(&space.params(&state.search.center())));
-    Ok(learned.record(Some((mean(|r| r.0), mean(|r| r.1))), Vec::new(), totals, run)?)
+    Ok(learned.record(Some(returns), Vec::new(), totals, run)?)
 }
 
 /// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed, it is the error.

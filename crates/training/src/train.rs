@@ -87,6 +87,8 @@ pub fn train_by(
         observer: &mut *observer,
         stopped: &stopped,
         clock: Clock::start(0.0),
+        // Of a candidate's training only the returns come back.
+        terms: if spec.method.trains_inside() { &[] } else { &assembly.worlds.training.env.terms },
     };
     let from = from.map(|checkpoint| &checkpoint.archive);
     let learned =

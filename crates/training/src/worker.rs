@@ -75,6 +75,7 @@ impl Worker {
             observer: &mut StateOnly(watch),
             stopped: &|| watch.stopped(),
             clock: Clock::start(0.0),
+            terms: &[],
         };
         match gradient(&inner, &mut context, request.from.as_ref()) {
             Ok(learned) if learned.trailing().0.is_nan() => {

@@ -169,6 +169,7 @@ fn numbers_that_are_none_travel_too() {
             context: vec![],
             log_prob: 0.0,
             outcome: Some(hwasp_core::Outcome { kind: "ball".into(), success: true }),
+            terms: vec![-0.0, 1e300],
         }],
         faults: vec![RolloutError { seed: 1, iteration: 2, episode: 3, step: 4, what: "it left".into() }],
         observed: vec![Moments { count: 1.0, mean: vec![f64::NAN], squares: vec![f64::INFINITY] }],

@@ -61,6 +61,7 @@ impl Task for Stand {
             horizon: 20,
             time_step: 0.1,
             shaped_by: vec!["shank".into()],
+            terms: vec![],
         }
     }
     fn reset(&mut self, plant: &mut Leg, rng: &mut Stream) {

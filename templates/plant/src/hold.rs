@@ -36,6 +36,7 @@ impl Task for Hold {
             horizon: 100,
             time_step: TIME_STEP,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

@@ -68,6 +68,7 @@ pub(crate) fn hand(hidden: &[usize]) -> Arc<HardwarePolicy> {
         horizon: 500,
         time_step: 0.05,
         shaped_by: vec![],
+        terms: vec![],
     };
     let spec = spec(law, hidden, vec![0.0; 11], vec![1.0; 11], 0.02);
     Arc::new(HardwarePolicy::new(spec, &env).expect("law and ports fit"))
@@ -103,6 +104,7 @@ pub(crate) fn hand_batch(policy: &HardwarePolicy, params: &[f32], rows: usize) -
             context: vec![],
             log_prob: 0.0,
             outcome: None,
+            terms: vec![],
         });
         batch.obs.extend(obs);
     }

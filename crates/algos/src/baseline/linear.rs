@@ -131,6 +131,7 @@ mod tests {
                 context: vec![],
                 log_prob: 0.0,
                 outcome: None,
+                terms: vec![],
             }],
             ..Batch::default()
         };
@@ -161,6 +162,7 @@ mod tests {
                 context: vec![],
                 log_prob: 0.0,
                 outcome: None,
+                terms: vec![],
             }],
             ..Batch::default()
         };
@@ -209,6 +211,7 @@ mod tests {
                 context: vec![],
                 log_prob: 0.0,
                 outcome: None,
+                terms: vec![],
             }],
             ..Batch::default()
         };

@@ -297,6 +297,7 @@ mod tests {
             context: vec![],
             log_prob: 0.0,
             outcome: None,
+            terms: vec![],
         }];
         (Batch { obs, reward: vec![0.0; rows], episodes, ..Batch::default() }, targets)
     }

@@ -218,6 +218,7 @@ mod tests {
             context: vec![0.3 + 0.2 * i as f32],
             log_prob: 0.0,
             outcome: None,
+            terms: vec![],
         };
         let batch = Batch {
             obs: vec![0.5; 40],

@@ -118,6 +118,7 @@ fn batch(ratio: [f64; 3], advantage: [f64; 3]) -> Batch {
                 context: vec![],
                 log_prob: 0.0,
                 outcome: None,
+                terms: vec![],
             })
             .collect(),
         ..Batch::default()

@@ -54,6 +54,7 @@ impl Task for Turn {
             horizon: self.horizon,
             time_step: 1.0,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
     fn reset(&mut self, plant: &mut Knob, rng: &mut Stream) {

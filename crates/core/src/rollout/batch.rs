@@ -33,6 +33,9 @@ pub struct Episode {
     pub log_prob: f32,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
+    /// What each named term of the reward came to, where it has some.
+    #[serde(default, with = "crate::bits")]
+    pub terms: Vec<f64>,
 }
 
 /// Whole episodes, one row per step, an episode's rows one after the other.

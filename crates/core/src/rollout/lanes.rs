@@ -285,6 +285,7 @@ impl<'p> Lanes<'p> {
             context: single(&context),
             log_prob: self.drawn[e],
             outcome: environment.outcome(),
+            terms: environment.terms().to_vec(),
         };
         self.over.push(Over { episode, observed });
     }
@@ -305,6 +306,7 @@ impl<'p> Lanes<'p> {
                 steps,
                 end,
                 outcome: environment.outcome(),
+                terms: environment.terms().to_vec(),
             })
         };
         self.environments.iter().map(AsRef::as_ref).enumerate().map(result).collect()

@@ -89,6 +89,7 @@ impl Task for Stay {
             horizon: HORIZON,
             time_step: 0.1,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

@@ -1,9 +1,9 @@
 //! Where an episode starts, what is seen and rewarded, and what pushes.
 
-use hwasp_core::{CommandPort, Dimension, EnvSpec, Law, Port};
+use hwasp_core::{CommandPort, Dimension, EnvSpec, Law, MOST_TERMS, Port};
 use hwasp_expr::{Exponents, Part, Quantity, Value};
 use hwasp_settings::nearest;
-use hwasp_settings::text::shorten;
+use hwasp_settings::text::{column_fault, shorten};
 
 use super::{Compiler, HORIZON, MOST_OBSERVED};
 use crate::columns::{Column, Reading};
@@ -82,6 +82,16 @@ impl Compiler<'_, '_> {
         if settings.reward.is_empty() {
             let hint = "write [task.reward] with terms: forward = \"joint.root.vel\"";
             self.refuse(&["reward"], "the reward has no term", Some(hint.into()));
+        }
+        if settings.reward.len() > MOST_TERMS {
+            let message = format!("the reward has {} terms, more than {MOST_TERMS}", settings.reward.len());
+            self.refuse(&["reward"], message, Some("put several into one: their sum is the same".into()));
+        }
+        for (name, _) in &settings.reward {
+            if let Some(why) = column_fault(name) {
+                let message = format!("a term cannot be called `{}`", shorten(name, 60));
+                self.refuse(&["reward", name], message, Some(format!("it has a curve of its name: {why}")));
+            }
         }
         let terms = self.each("reward", &settings.reward);
         let kinds = self.each("kinds", &settings.kinds).into_iter().map(|(_, part)| part).collect();
@@ -207,6 +217,7 @@ impl Compiler<'_, '_> {
             horizon: HORIZON,
             time_step: self.names.time_step,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 }

@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use crate::figure::{gallery, picture};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{decimal, mean_interval, percent, rate_interval};
+use crate::words::{decimal, mean_interval, percent, rate_interval, spaced};
 
 pub(crate) fn section(run: &Run) -> Section {
     let evaluation = &run.summary.evaluation;
@@ -79,6 +79,9 @@ fn returns(run: &Run, evaluation: &Evaluation) -> Markup {
                         td.n { (decimal(figure.mean, 2)) }
                         td.n { (mean_interval(figure, 2)) }
                     }
+                }
+                @for (term, mean) in &evaluation.terms {
+                    tr { th scope="row" { "undiscounted, of " (spaced(term)) } td.n { (decimal(*mean, 2)) } td.n { "–" } }
                 }
                 tr {
                     th scope="row" { "discounted, median" }

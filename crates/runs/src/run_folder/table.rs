@@ -8,16 +8,7 @@ use hwasp_training::MetricsRow;
 
 use crate::error::{RunError, io_error};
 use crate::files::{self, Files};
-use crate::metrics::{MetricsError, MetricsTable, MetricsWriter};
-
-/// The columns of a table that depend on the experiment.
-#[derive(Clone, Copy)]
-pub(super) struct Columns<'a> {
-    /// The names of the learner's metrics.
-    pub(super) learner: &'a [&'a str],
-    /// The names of the design totals.
-    pub(super) totals: &'a [String],
-}
+use crate::metrics::{Columns, MetricsError, MetricsTable, MetricsWriter};
 
 /// Rows that are on the disk, and rows that are to go there: what cannot be written now is kept.
 #[derive(Debug)]
@@ -32,13 +23,13 @@ pub(super) struct Table {
 impl Table {
     /// A table without rows, of which nothing is written yet.
     fn begin(path: &Path, columns: Columns<'_>) -> Result<Self, RunError> {
-        let writer = MetricsWriter::new(Vec::new(), columns.learner, columns.totals);
+        let writer = MetricsWriter::new(Vec::new(), columns);
         let pending = writer.map_err(|source| RunError::Metrics { path: path.to_owned(), source })?;
         Ok(Self { path: path.to_owned(), header: pending.get_ref().clone(), pending, length: 0 })
     }
 
     /// Cuts a table back to the rows before `iteration`, and writes it anew with these columns: one that an earlier version
-    /// wrote may have other metrics. One that is damaged is set aside: a curve is not worth a training.
+    /// wrote may have others. One that is damaged is set aside: a curve is not worth a training.
     pub(super) fn resume(
         path: &Path,
         files: &dyn Files,
@@ -95,5 +86,5 @@ impl Table {
 
 fn rows_before(path: &Path, columns: Columns<'_>, iteration: u64) -> Result<Vec<MetricsRow>, MetricsError> {
     let kept = MetricsTable::read_before(BufReader::new(fs::File::open(path)?), iteration)?;
-    if kept.design_totals == columns.totals { Ok(kept.rows_with(columns.learner)) } else { Err(MetricsError::Another) }
+    if kept.design_totals == columns.totals { Ok(kept.rows_with(columns)) } else { Err(MetricsError::Another) }
 }

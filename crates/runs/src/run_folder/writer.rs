@@ -11,12 +11,13 @@ use hwasp_experiment::{EXPERIMENT, Experiment};
 use hwasp_training::{Assembly, Checkpoint, Event, FailedIteration, Observer, ObserverError, Trained};
 
 use super::lock::{LOCK, RunLock};
-use super::table::{Columns, Table};
+use super::table::Table;
 use super::{Provenance, SavedRun};
 use crate::checkpoint::experiment_hash;
 use crate::error::{RunError, encode, io_error};
 use crate::files::{self, Disk, Files, json, read_limited, with_file_above};
 use crate::layout::{DESIGN, METRICS, OWN, POLICY, PROVENANCE, SUMMARY};
+use crate::metrics::Columns;
 use crate::policy_file::write_policy;
 use crate::store::{CheckpointStore, Found};
 use crate::summary::Summary;
@@ -335,7 +336,9 @@ impl Observer for RunFolder {
     fn on(&mut self, event: Event<'_>) -> Result<(), ObserverError> {
         let boxed = |error| ObserverError(Box::new(error));
         match event {
-            Event::Started { learner, totals, .. } => self.begin(Columns { learner, totals }).map_err(boxed)?,
+            Event::Started { learner, terms, totals, .. } => {
+                self.begin(Columns { learner, terms, totals }).map_err(boxed)?;
+            }
             Event::Iteration(row) => {
                 if let Some(table) = &mut self.table {
                     table.push(row).map_err(boxed)?;

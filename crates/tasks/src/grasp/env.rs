@@ -29,5 +29,15 @@ pub fn env_spec(hand: &HandDescription, palm: PalmMotion, palm_step: f64, horizo
     let mut context = vec![port("mass", Dimension::Mass), port("friction", Dimension::None)];
     context.extend(ShapeKind::EACH.iter().map(|kind| port(kind.name(), Dimension::None)));
     context.extend(["inertia_x", "inertia_y", "inertia_z"].iter().map(|name| port(name, Dimension::None)));
-    EnvSpec { observation, state, context, effort, command, horizon, time_step: hand.step_time(), shaped_by: vec![] }
+    EnvSpec {
+        observation,
+        state,
+        context,
+        effort,
+        command,
+        horizon,
+        time_step: hand.step_time(),
+        shaped_by: vec![],
+        terms: vec![],
+    }
 }

@@ -71,6 +71,7 @@ impl Task for MassSpringTask {
             horizon: self.horizon,
             time_step: self.time_step,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

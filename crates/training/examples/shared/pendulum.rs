@@ -65,6 +65,7 @@ impl Task for Lift {
             horizon: 100,
             time_step: f64::from(SUBSTEPS) * DT,
             shaped_by: vec![],
+            terms: vec![],
         }
     }
 

@@ -17,6 +17,7 @@ use crate::collect::{
 use crate::error::TrainError;
 use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer};
+use crate::returns::{Returns, mean_terms};
 
 /// How old a candidate's own training may be in a checkpoint that another candidate had made.
 const STALE: Duration = Duration::from_secs(1);
@@ -148,7 +149,9 @@ impl Scoring<'_> {
         match collector.candidate(&request, watch)? {
             CandidateAnswer::Trained { controller, returns, env_steps, discarded_episodes } => {
                 params[..controller.len()].copy_from_slice(&controller);
-                Ok(Scored { params, returns: Some(returns), env_steps, discarded_episodes, ..Scored::default() })
+                let (discounted, undiscounted) = returns;
+                let returns = Some(Returns { discounted, undiscounted, terms: Vec::new() });
+                Ok(Scored { params, returns, env_steps, discarded_episodes, ..Scored::default() })
             }
             CandidateAnswer::Failed(failure) => {
                 Ok(Scored { params, failure: Some(failure), env_steps, ..Scored::default() })
@@ -171,7 +174,7 @@ fn looked_through(
         let batch = collector.rows(&part)?;
         let (discounted, undiscounted) = (batch.returns(discount), batch.returns(1.0));
         let width = batch.obs.len() / batch.rows().max(1);
-        for (k, Episode { rows, end, outcome, .. }) in batch.episodes.into_iter().enumerate() {
+        for (k, Episode { rows, end, outcome, terms, .. }) in batch.episodes.into_iter().enumerate() {
             seen.update(&batch.obs[rows.start * width..rows.end * width]);
             results.push(Ok(EpisodeResult {
                 discounted_return: discounted[k],
@@ -179,6 +182,7 @@ fn looked_through(
                 steps: rows.len(),
                 end,
                 outcome,
+                terms,
             }));
         }
         results.extend(batch.faults.into_iter().map(Err));
@@ -194,8 +198,13 @@ fn of_results(results: &[EpisodeAnswer]) -> Scored {
         Err(fault) => fault.env_steps(),
     };
     let mean = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).sum::<f64>() / results.len() as f64;
+    let returns = || Returns {
+        discounted: mean(|e| e.discounted_return),
+        undiscounted: mean(|e| e.undiscounted_return),
+        terms: mean_terms(&results.iter().flatten().map(|e| &*e.terms).collect::<Vec<_>>()),
+    };
     Scored {
-        returns: faults.is_empty().then(|| (mean(|e| e.discounted_return), mean(|e| e.undiscounted_return))),
+        returns: faults.is_empty().then(returns),
         failure: faults.first().map(|fault| CandidateFailure::episode(fault)),
         env_steps: results.iter().map(steps).sum(),
         discarded_episodes: faults.len() as u64,

@@ -86,11 +86,9 @@ impl<'a> SearchSpace<'a> {
 
     /// What a candidate is worth to the search; a failed one ranks last.
     pub(super) fn score(&self, scored: &Scored) -> f64 {
-        scored.returns.map_or(f64::NEG_INFINITY, |(discounted, undiscounted)| {
-            match self.assembly.experiment().search.score {
-                Score::Return => undiscounted,
-                Score::DiscountedReturn => discounted,
-            }
+        scored.returns.as_ref().map_or(f64::NEG_INFINITY, |returns| match self.assembly.experiment().search.score {
+            Score::Return => returns.undiscounted,
+            Score::DiscountedReturn => returns.discounted,
         })
     }
 }

@@ -5,6 +5,7 @@ use hwasp_algos::{Archive, Exchange, Persist, Search, StateError, StateFilter};
 use crate::checkpoint::Checkpoint;
 use crate::collect::CandidateFailure;
 use crate::learned::{Clock, Learned};
+use crate::returns::Returns;
 
 /// A search.
 pub(super) struct State {
@@ -32,8 +33,8 @@ pub(super) enum Slot {
 pub(super) struct Scored {
     /// The parameters that acted: of the whole policy.
     pub(super) params: Vec<f32>,
-    /// Mean discounted and undiscounted return; none where it failed.
-    pub(super) returns: Option<(f64, f64)>,
+    /// What its episodes came to; none where it failed.
+    pub(super) returns: Option<Returns>,
     /// Why it failed, where it did.
     pub(super) failure: Option<CandidateFailure>,
     /// Steps taken.
@@ -162,18 +163,15 @@ impl Scored {
 impl Persist for Scored {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
         with.series("params", &mut self.params)?;
-        let mut returns = self.returns.map_or(Vec::new(), |r| vec![r.0, r.1]);
+        let flat = |r: &Returns| [&[r.discounted, r.undiscounted], &*r.terms].concat();
+        let mut returns = self.returns.as_ref().map_or(Vec::new(), flat);
         with.series("returns", &mut returns)?;
         self.returns = match returns[..] {
             [] => None,
-            [discounted, undiscounted] => Some((discounted, undiscounted)),
-            _ => {
-                return Err(with.refuse(
-                    "returns",
-                    returns.len() as f64,
-                    "the length of a pair of returns, or of none",
-                ));
+            [discounted, undiscounted, ref terms @ ..] => {
+                Some(Returns { discounted, undiscounted, terms: terms.to_vec() })
             }
+            [_] => return Err(with.refuse("returns", 1.0, "the length of a pair of returns, or of none")),
         };
         let (mut cause, mut text) = self.failure.take().map_or((None, None), |f| (Some(f.cause), Some(f.text)));
         with.text("failure.cause", &mut cause)?;

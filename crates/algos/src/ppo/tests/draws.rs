@@ -130,6 +130,7 @@ fn gathered() -> (Batch, Vec<f32>, Draws) {
         context: vec![],
         log_prob: (draws[e] - RATIO.0[e].ln()) as f32,
         outcome: None,
+        terms: vec![],
     };
     let batch = Batch {
         obs: OBS.map(|x| x as f32).to_vec(),

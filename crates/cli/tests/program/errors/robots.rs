@@ -147,6 +147,7 @@ pub(super) const CASES: &[Case] = &[
     robot!("A fault in a text of several lines", "observe = [\"\"\"\n  joint.knee.pos\n  + joint.nee.pos\"\"\"]\n"),
     // Purpose.
     robot!("No reward", "", "[task.reward]\n"),
+    robot!("A term of the reward that cannot name a curve", "", "[task.reward]\n\"how far\" = \"1\"\n"),
     robot!("Definitions in a circle", "", "[task.define]\na = \"b + 1\"\nb = \"a + 1\"\n"),
     robot!("A definition with the name of a word", "", "[task.define]\njoint = \"1\"\n"),
     robot!("A definition with the name of a unit", "", "[task.define]\nkg = \"1\"\n"),

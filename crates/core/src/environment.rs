@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::sight::Sight;
 use crate::streams::Stream;
 use crate::units::Dimension;
 
@@ -78,10 +79,10 @@ pub struct CommandPort {
     pub direct: bool,
 }
 
-/// What an environment is from outside.
 /// The most terms of a reward that are told apart: each has a column in learning curves.
 pub const MOST_TERMS: usize = 32;
 
+/// What an environment is from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvSpec {
     /// What the controller sees.
@@ -101,10 +102,10 @@ pub struct EnvSpec {
     /// The groups of design parameters that the world's model is made from ([`Environment::set_design`]); none for most
     /// worlds, which meet the design only through the law. Such parameters stay as they are during an episode.
     pub shaped_by: Vec<String>,
-}
     /// The names of the terms that a reward is the sum of, as [`Environment::terms`] has them, at most [`MOST_TERMS`];
     /// none where it is one number.
     pub terms: Vec<String>,
+}
 
 /// Physics, without purpose: what the robot and the world do under an effort.
 pub trait Plant: Send {
@@ -150,18 +151,23 @@ pub trait Task: Send {
     /// The reward of having arrived at this state under `command`; called once a step, so that a task may keep count.
     fn reward(&mut self, plant: &Self::Plant, command: &[f64]) -> f64;
 
-    /// Whether this state has no future; asked after [`reward`](Self::reward), so that what it has counted is known.
     /// What each named term of the reward came to so far in the episode.
     fn terms(&self) -> &[f64] {
         &[]
     }
 
+    /// Whether this state has no future; asked after [`reward`](Self::reward), so that what it has counted is known.
     fn terminated(&self, _plant: &Self::Plant) -> bool {
         false
     }
 
     /// Whether the episode so far is a success, for tasks that know.
     fn outcome(&self) -> Option<Outcome> {
+        None
+    }
+
+    /// What is to be seen now, for films; none where nobody has said how it looks.
+    fn look(&mut self, _plant: &Self::Plant) -> Option<Sight> {
         None
     }
 }
@@ -194,17 +200,22 @@ pub trait Environment: Send {
     /// One control step. Commands are limited to their ports' ranges by the environment itself.
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step;
 
-    /// Whether the episode so far is a success, for tasks that know.
-    fn outcome(&self) -> Option<Outcome> {
-        None
-    }
-
-    /// What went wrong, after a step that [faulted](End::Faulted).
     /// What each named term of the reward came to so far in the episode ([`EnvSpec::terms`]): their sum is the return.
     fn terms(&self) -> &[f64] {
         &[]
     }
 
+    /// Whether the episode so far is a success, for tasks that know.
+    fn outcome(&self) -> Option<Outcome> {
+        None
+    }
+
+    /// What is to be seen now, for films; none where nobody has said how it looks. The episode goes on with the same bits.
+    fn look(&mut self) -> Option<Sight> {
+        None
+    }
+
+    /// What went wrong, after a step that [faulted](End::Faulted).
     fn fault(&self) -> Option<String> {
         None
     }
@@ -293,8 +304,16 @@ impl<T: Task> Environment for Robot<T> {
         Step { reward, end }
     }
 
+    fn terms(&self) -> &[f64] {
+        self.task.terms()
+    }
+
     fn outcome(&self) -> Option<Outcome> {
         self.task.outcome()
+    }
+
+    fn look(&mut self) -> Option<Sight> {
+        self.task.look(&self.plant)
     }
 
     fn fault(&self) -> Option<String> {
@@ -304,10 +323,6 @@ impl<T: Task> Environment for Robot<T> {
 
 /// Makes environments of one kind, for as many threads as there are.
 pub trait MakeEnvironment: Send + Sync {
-    fn terms(&self) -> &[f64] {
-        self.task.terms()
-    }
-
     /// A fresh one; `horizon` replaces the task's own.
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment>;
 }

@@ -18,6 +18,7 @@ mod placement;
 mod policy;
 mod rollout;
 mod schedule;
+mod sight;
 mod streams;
 mod units;
 
@@ -37,5 +38,6 @@ pub use policy::{
 };
 pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, LaneSteps, RolloutError, Sampler, all_failed};
 pub use schedule::share_done;
+pub use sight::{Cord, Form, Sight, Solid};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, split_quantity, unit};

@@ -146,6 +146,11 @@ impl Body {
         Ok(())
     }
 
+    /// All positions, as the engine has them.
+    pub(crate) fn positions(&self) -> &[f64] {
+        self.sim.qpos()
+    }
+
     /// Computes what is derived of the state, where that is wanted.
     pub(crate) fn refresh(&mut self, wanted: bool) -> Result<(), String> {
         if wanted { self.sim.forward().map_err(|fault| fault.to_string()) } else { Ok(()) }

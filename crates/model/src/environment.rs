@@ -4,9 +4,9 @@ mod advance;
 
 use std::sync::Arc;
 
-use hwasp_core::{End, EnvSpec, Environment, MakeEnvironment, Outcome, Step, Stream};
+use hwasp_core::{End, EnvSpec, Environment, MakeEnvironment, Outcome, Sight, Step, Stream};
 use hwasp_expr::Distribution;
-use hwasp_mujoco::engine::Spec;
+use hwasp_mujoco::engine::{Spec, View};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
@@ -64,6 +64,8 @@ pub(crate) struct ModelEnvironment {
     /// What each term of the reward came to so far.
     terms: Vec<f64>,
     fault: Option<String>,
+    /// What is seen of the model with the numbers of the shaped fields that it was compiled with.
+    view: Option<(Vec<f64>, View)>,
 }
 
 impl ModelEnvironment {
@@ -94,9 +96,10 @@ impl ModelEnvironment {
             told: Delay::default(),
             kind: 0,
             success: false,
-            fault: None,
-            robot: Arc::clone(robot),
             terms: vec![0.0; spec.terms.len()],
+            fault: None,
+            view: None,
+            robot: Arc::clone(robot),
             spec,
         };
         environment.bind();
@@ -171,7 +174,6 @@ impl ModelEnvironment {
         let robot = Arc::clone(&self.robot);
         let (Some(shaping), Some(ready)) = (&robot.shaping, &mut self.shaping) else { return Ok(()) };
         ready.run(&shaping.formula, &self.values);
-        let same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
         if same(&ready.out, &self.shaped) {
             return Ok(());
         }
@@ -211,9 +213,9 @@ impl ModelEnvironment {
         (self.taken, self.success, self.kind) = (0, false, 0);
         self.effort.fill(0.0);
         self.command.fill(0.0);
+        self.terms.fill(0.0);
         // Nothing of the episode before: what comes may follow on any other.
         for (value, column) in self.values.iter_mut().zip(&self.robot.columns) {
-        self.terms.fill(0.0);
             if matches!(column, Column::Memory(_) | Column::Draw(..)) {
                 *value = 0.0;
             }
@@ -280,6 +282,11 @@ impl ModelEnvironment {
         }
         new
     }
+}
+
+/// Whether all have the same bits.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()))
 }
 
 impl Environment for ModelEnvironment {
@@ -351,16 +358,24 @@ impl Environment for ModelEnvironment {
         Step { reward, end }
     }
 
+    fn terms(&self) -> &[f64] {
+        &self.terms
+    }
+
     fn outcome(&self) -> Option<Outcome> {
         let kind = Arc::clone(&self.robot.kinds[self.kind]);
         self.robot.outputs.success.then_some(Outcome { kind, success: self.success })
     }
 
-    fn fault(&self) -> Option<String> {
-        self.fault.clone()
-    fn terms(&self) -> &[f64] {
-        &self.terms
+    fn look(&mut self) -> Option<Sight> {
+        if !self.view.as_ref().is_some_and(|(shaped, _)| same(shaped, &self.shaped)) {
+            self.view = Some((self.shaped.clone(), self.robot.view(&self.shaped)?));
+        }
+        let (_, view) = self.view.as_mut()?;
+        Some(view.sight(self.body.positions()))
     }
 
+    fn fault(&self) -> Option<String> {
+        self.fault.clone()
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use hwasp_core::{EnvSpec, Law};
 use hwasp_diff::Program;
 use hwasp_expr::Distribution;
-use hwasp_mujoco::engine::{Element, FieldPath, Files, Simulation, Spec, SpecError};
+use hwasp_mujoco::engine::{Element, FieldPath, Files, Simulation, Spec, SpecError, View};
 use hwasp_problem::AnyError;
 
 use crate::columns::{Column, Reading};
@@ -180,6 +180,15 @@ impl Robot {
         if let Ok(Some(simulation)) = plain() {
             (self.plain, self.simulation) = (true, Mutex::new(simulation));
         }
+    }
+
+    /// What is seen of it: of the whole model, whatever environments leave out, with these numbers of the shaped fields; as the
+    /// model has them where there are none. None where it cannot be compiled, which environments tell.
+    pub(crate) fn view(&self, shaped: &[f64]) -> Option<View> {
+        let mut spec = self.additions.spec(&self.main, &self.files).ok()?;
+        let fields = self.shaping.iter().flat_map(|shaping| &shaping.fields);
+        fields.zip(shaped).try_for_each(|(field, &value)| spec.set(field, value)).ok()?;
+        Some(View::new(spec.compile().ok()?))
     }
 
     /// What an output of the step's program is, for messages.

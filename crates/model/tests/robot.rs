@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{End, Environment, Purpose, stream};
+use hwasp_core::{End, Environment, Form, Purpose, stream};
 use hwasp_experiment::{Experiment, Files, Folder, Layers, resolve};
 use hwasp_testing::catalogue;
 
@@ -270,4 +270,35 @@ fn a_step_allocates_nothing() {
         }
     });
     assert_eq!(counted.count_total, 0);
+}
+
+/// Whoever looks sees the model where the state says it is, visuals and tendons included, and changes no bit of what follows.
+#[test]
+fn looking_changes_nothing() {
+    let text = "frame_skip = 10\nobserve = [\"qpos\", \"qvel\"]\n[task.law]\n\"joint.hinge\" = \"stiffness * (0.5 rad - joint.hinge.pos)\"\n\
+                [task.design]\nstiffness = { limits = [\"1 N*m/rad\", \"3 N*m/rad\"] }\n\
+                edge = { limits = [\"0.1 m\", \"0.5 m\"], sets = [\"geom.load.size[0] = edge\"] }\n";
+    let (mut looked, mut alone) = (robot(text), robot(text));
+    for edge in [0.2, 0.3] {
+        for robot in [&mut looked, &mut alone] {
+            robot.set_design(&[edge, 2.0]);
+            begin(&mut **robot, 0);
+        }
+        for _ in 0..20 {
+            let sight = looked.look().unwrap();
+            let state = seen(&*looked);
+            let [load, rod] = &sight.solids[..] else { panic!("{sight:?}") };
+            near(&load.at, &[state[0], 0.0, 0.0], 1e-12);
+            near(&rod.at, &[-0.25 * state[1].sin(), 1.0, -0.25 * state[1].cos()], 1e-12);
+            near(&rod.axes[2], &[state[1].sin(), 0.0, state[1].cos()], 1e-12);
+            assert_eq!((&load.form, load.fixed), (&Form::Box([edge, 0.1, 0.1]), false));
+            assert_eq!(rod.form, Form::Capsule { radius: 0.02, half_length: 0.25 });
+            // One over joints has no way through space.
+            assert!(sight.cords.iter().all(|cord| cord.parts.is_empty()));
+            let steps = [&mut looked, &mut alone].map(|robot| robot.step(&[1.0], &[4.0, 0.0]));
+            assert_eq!(steps[0], steps[1]);
+            let bits = |robot: &dyn Environment| seen(robot).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&*looked), bits(&*alone));
+        }
+    }
 }

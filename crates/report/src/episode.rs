@@ -1,4 +1,4 @@
-//! An episode to look at: drawn grasps of a hand, curves of anything else.
+//! Episodes to look at: a film of what shows itself, and curves.
 
 use hwasp_core::{Batch, Serial};
 use hwasp_plot::trace;
@@ -7,16 +7,23 @@ use hwasp_training::{Assembly, EvaluateError, held_out, sampler};
 use maud::{Markup, html};
 
 use crate::figure::{gallery, picture};
+use crate::film::{Request, film};
 use crate::page::Section;
 use crate::run::Run;
 use crate::words::{sentence, spaced};
 
+/// Bytes of the films of a page, at most.
+const MOST_BYTES: usize = 180_000;
+
 /// # Errors
-/// Of a policy that is missing or damaged. Where an episode cannot be run, the page says so, and the rest of it stands.
+/// Of a policy that is missing or damaged. Where an episode cannot be run, for want of an engine for one, the page says so, and
+/// the rest of it stands.
 pub(super) fn section(run: &Run) -> Result<Section, RunError> {
-    let (title, body) = match run.design.hand {
-        Some(_) => ("How it grasps", grasps(run)?),
-        None => ("How it moves", moves(run)?),
+    let title = if run.design.hand.is_some() { "How it grasps" } else { "How it moves" };
+    let body = match SavedRun::open(&run.path, run.spec.catalogue()) {
+        Ok(saved) => shown(run, saved.assembly(), &saved.params()?),
+        Err(RunError::Assemble(error)) => failed(&error),
+        Err(error) => return Err(error),
     };
     Ok(Section { id: "episode", title, body })
 }
@@ -25,33 +32,31 @@ fn failed(error: &dyn std::error::Error) -> Markup {
     html! { p { "No episode can be shown: " (error) "." } }
 }
 
-#[cfg(feature = "mujoco")]
-fn grasps(run: &Run) -> Result<Markup, RunError> {
-    let saved = SavedRun::open(&run.path, run.spec.catalogue())?;
-    let drawn = crate::grasp::section(saved.assembly(), &saved.params()?);
-    Ok(drawn.unwrap_or_else(|error| failed(&error)))
-}
-
-#[cfg(not(feature = "mujoco"))]
-#[allow(clippy::unnecessary_wraps)] // as with the engine
-fn grasps(_: &Run) -> Result<Markup, RunError> {
-    Ok(html! {
-        p {
-            "Grasps are simulated when the report is made, and the program that made this one was built without the MuJoCo engine. \
-             A program with it, which is the default, draws them here."
+/// A film of what shows itself, and curves of an episode; what a hand sees is in its film.
+fn shown(run: &Run, assembly: &Assembly, params: &[f32]) -> Markup {
+    let seed = run.summary.evaluation.seed;
+    let request = Request {
+        assembly,
+        params,
+        world: &assembly.worlds.deployment,
+        design: &assembly.built(params),
+        seed,
+        episodes: Vec::new(),
+        most_bytes: MOST_BYTES,
+    };
+    let drawn = match film(&request) {
+        Ok(film) => film,
+        Err(error) => return failed(&error),
+    };
+    html! {
+        @if let Some(film) = drawn { (film) }
+        @if run.design.hand.is_none() {
+            @match first_episode(assembly, params, seed) {
+                Ok(batch) => (curves(run, assembly, params, &batch)),
+                Err(error) => (failed(&error)),
+            }
         }
-    })
-}
-
-/// What the controller sees and commands in the first held-out episode.
-fn moves(run: &Run) -> Result<Markup, RunError> {
-    let saved = SavedRun::open(&run.path, run.spec.catalogue())?;
-    let params = saved.params()?;
-    let batch = first_episode(saved.assembly(), &params, run.summary.evaluation.seed);
-    Ok(match batch {
-        Ok(batch) => curves(run, saved.assembly(), &params, &batch),
-        Err(error) => failed(&error),
-    })
+    }
 }
 
 fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Markup {

@@ -1,7 +1,7 @@
 //! Reports: the result of a run or a comparison, as one HTML document that loads nothing.
 //!
 //! The document is for a telephone, a desktop screen and paper. It has pictures as SVG with titles and descriptions, tables with
-//! captions, and one script, which plays the drawn grasps. The same folder gives the same bytes with the same program. All text
+//! captions, and one script, which plays the drawn episodes. The same folder gives the same bytes with the same program. All text
 //! of a folder is escaped. A content security policy in the document names the program's own style and script by their hashes,
 //! and forbids everything else.
 
@@ -10,8 +10,7 @@
 mod comparison;
 mod episode;
 mod figure;
-#[cfg(feature = "mujoco")]
-mod grasp;
+mod film;
 mod page;
 pub mod play;
 mod run;

@@ -1,36 +1,47 @@
-// Plays the drawn grasps: every picture is a path for each slot of the drawing. Without it the stills tell the same.
+// Plays the drawn episodes: every picture is a path for each slot of the drawing. Without it the stills tell the same.
 (() => {
   "use strict";
   const REST = 1.2; // seconds that the last picture is shown
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   for (const player of document.querySelectorAll(".player")) {
-    const reels = JSON.parse(player.querySelector("script").textContent);
-    const step = Number(player.dataset.step);
-    const slots = [...player.querySelectorAll("[data-slot]")];
-    const object = player.querySelector(".object");
+    // Corner, order, and paths of every picture; what is empty is as it was before.
+    const reels = JSON.parse(player.querySelector("script").textContent).map((reel) => {
+      let before = [];
+      const frames = reel.frames.map((frame) => (before = frame.split("|").map((part, i) => part || before[i])));
+      return { ...reel, frames };
+    });
+    const camera = player.querySelector(".camera");
+    const solids = player.querySelector(".solids");
+    const slots = {};
+    for (const slot of solids.children) slots[slot.dataset.slot] = slot;
     const takes = [...player.querySelectorAll(".takes button")];
     const play = player.querySelector(".play");
     const slider = player.querySelector("input");
     const clock = player.querySelector(".clock");
     let reel = reels[0];
+    let painted;
     let playing = false;
     let began = 0;
 
     const show = (at) => {
-      const paths = reel.frames[at].split("|");
-      for (const slot of slots) slot.setAttribute("d", paths[slot.dataset.slot]);
+      const [corner, order, ...paths] = reel.frames[at];
+      camera.setAttribute("transform", `translate(${corner.split(" ").map((x) => -x).join(" ")})`);
+      for (const [slot, path] of Object.entries(slots)) path.setAttribute("d", paths[slot]);
+      if (order !== painted) solids.append(...(order ?? "").split(" ").filter(Boolean).map((slot) => slots[slot]));
+      painted = order;
       slider.value = at;
-      const told = `${(at * step).toFixed(2)} s, ${reel.height[at]} mm above the floor`;
+      const told = `${reel.times[at].toFixed(2)} s, ${reel.told[at]}`;
       slider.setAttribute("aria-valuetext", told);
       clock.textContent = told;
     };
     const last = () => reel.frames.length - 1;
     const tick = (now) => {
       if (!playing) return;
-      if (!began) began = now - slider.value * step * 1000;
+      if (!began) began = now - reel.times[slider.value] * 1000;
       const seconds = (now - began) / 1000;
-      show(Math.min(Math.floor(seconds / step), last()));
-      if (seconds > last() * step + REST) began = now;
+      const next = reel.times.findIndex((time) => time > seconds);
+      show(next < 0 ? last() : Math.max(next - 1, 0));
+      if (seconds > reel.times[last()] + REST) began = now;
       requestAnimationFrame(tick);
     };
     const go = (on) => {
@@ -43,7 +54,6 @@
     };
     const choose = (i, at) => {
       reel = reels[i];
-      object.dataset.kind = reel.kind;
       takes.forEach((take, j) => take.setAttribute("aria-pressed", String(i === j)));
       slider.max = last();
       began = 0;

@@ -26,6 +26,7 @@ mod sensor;
 mod shape;
 mod simulation;
 mod spec;
+mod view;
 
 pub use contact::{Contact, ContactForce};
 pub use edit::{EditError, ModelEdit};
@@ -46,3 +47,4 @@ pub use quantity::Quantity;
 pub use shape::Shape;
 pub use simulation::{Simulation, Wrench};
 pub use spec::{Element, FieldPath, SettableField, Spec, SpecError, settable_fields};
+pub use view::View;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{EnvSpec, Outcome, Stream, Task};
+use hwasp_core::{EnvSpec, Outcome, Sight, Stream, Task};
 use rand::RngExt;
 
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
+use crate::engine::View;
 use hwasp_tasks::grasp::env_spec;
 
 /// The steps at the end of an episode over which a grasp has to hold.
@@ -18,6 +19,9 @@ pub const HOLD_HEIGHT: f64 = 0.100;
 pub const HOLD_TOUCH: f64 = 0.9;
 /// How far the object may move relative to the palm over them, m.
 pub const HOLD_DRIFT: f64 = 0.010;
+
+/// What a row of stills shows: the last two are half of what success asks for, and all of it.
+const MOMENTS: [&str; 4] = ["contact", "lifted", "raised 5 cm", "raised 10 cm"];
 
 /// One step of the hold.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,6 +47,8 @@ pub struct GraspTask {
     kind: usize,
     /// How far training has come.
     progress: f64,
+    /// What is seen in the episode at hand, once somebody looks.
+    view: Option<View>,
 }
 
 impl GraspTask {
@@ -57,6 +63,7 @@ impl GraspTask {
             kinds,
             kind,
             progress: 1.0,
+            view: None,
         }
     }
 
@@ -98,6 +105,7 @@ impl Task for GraspTask {
         let above = from + (to - from) * rng.random::<f64>();
         let object = Object::draw(&self.settings, self.progress, rng);
         self.kind = object.kind as usize;
+        self.view = None;
         self.taken = 0;
         let top = object.bounding_box()[2];
         // Settings were checked: what is drawn from them is a body.
@@ -141,6 +149,21 @@ impl Task for GraspTask {
         let before = std::mem::replace(&mut self.beside, beside(palm, object));
         let nearer = reward.approach * (before - self.beside);
         reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer
+    }
+
+    fn look(&mut self, plant: &GraspPlant) -> Option<Sight> {
+        let view = self.view.get_or_insert_with(|| View::new(plant.simulation().clone()));
+        let mut sight = view.sight(plant.simulation().qpos());
+        let Object { size, mass, friction, .. } = plant.object();
+        let [x, y, z] = size.map(|edge| 1e3 * edge);
+        sight.about = format!("{x:.0} × {y:.0} × {z:.0} mm, {:.0} g, friction {friction:.2}", 1e3 * mass);
+        let clearance = plant.clearance();
+        sight.told = format!("{:.0} mm above the floor", (1e3 * clearance).max(0.0));
+        // Contacts are computed by the first step; before it there are none.
+        let touches = self.taken > 0 && plant.touching().contains(&true);
+        let seen = [touches, clearance > 0.002, clearance >= 0.5 * HOLD_HEIGHT, clearance >= HOLD_HEIGHT];
+        sight.moments = MOMENTS.into_iter().zip(seen).filter_map(|(name, seen)| seen.then_some(name)).collect();
+        Some(sight)
     }
 
     fn outcome(&self) -> Option<Outcome> {

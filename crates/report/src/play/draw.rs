@@ -9,9 +9,8 @@ use hwasp_mujoco::grasp::{Object, Stage, Still};
 use hwasp_tasks::hand::names;
 use hwasp_training::Assembly;
 
-use super::{
-    Caption, Moment, Picture, PlayError, PlayOptions, Played, Row, Take, film, gif, grasp, label, moments, sheet,
-};
+use super::film::grasp;
+use super::{Caption, Moment, Picture, PlayError, PlayOptions, Played, Row, Take, film, gif, label, moments, sheet};
 
 /// Pictures a second, and what a step lasts, s.
 const RATE: usize = 20;

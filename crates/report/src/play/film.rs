@@ -25,7 +25,7 @@ pub struct Take {
 
 /// The grasping task by itself, whose episodes can be looked at: that of evaluation, or with a `native` design (SI) that of
 /// [`Assembly::native`].
-pub(crate) fn grasp(assembly: &Assembly, native: Option<&[f64]>) -> Result<Grasp, PlayError> {
+pub(super) fn grasp(assembly: &Assembly, native: Option<&[f64]>) -> Result<Grasp, PlayError> {
     let settings = settings_of(check(assembly)?);
     Ok(match native {
         None => Grasp::new(settings)?,

@@ -1,7 +1,8 @@
-//! Episodes to look at: held-out grasps of a saved run as films (GIF) and on one sheet (PNG).
+//! Episodes to look at: of any world that shows itself, drawn as a page for a browser; held-out grasps of a saved run as films (GIF)
+//! and on one sheet (PNG), too.
 //!
 //! `film` runs the episodes that [`evaluate`](hwasp_training::evaluate()) runs, to the bit, and keeps their poses. Only `play`
-//! draws them, in builds with the feature `renderer`.
+//! renders them, in builds with the feature `renderer`.
 
 mod canvas;
 #[cfg(feature = "renderer")]
@@ -10,6 +11,7 @@ mod draw;
 mod film;
 #[cfg(feature = "renderer")]
 mod gif;
+mod html;
 mod label;
 #[cfg(feature = "mujoco")]
 mod moments;
@@ -21,15 +23,14 @@ use thiserror::Error;
 
 use hwasp_plot::PlotError;
 use hwasp_tasks::grasp::GraspTaskSettings;
-use hwasp_training::{AssembleError, Assembly};
+use hwasp_training::{AssembleError, Assembly, EvaluateError};
 
 pub use canvas::Picture;
 #[cfg(feature = "renderer")]
 pub use draw::play;
 #[cfg(feature = "mujoco")]
-pub(crate) use film::grasp;
-#[cfg(feature = "mujoco")]
 pub use film::{Take, film};
+pub use html::page;
 pub use label::{Caption, label};
 #[cfg(feature = "mujoco")]
 pub use moments::{MOMENTS, Moment, moments};
@@ -84,6 +85,15 @@ pub enum PlayError {
         /// The problem.
         problem: String,
     },
+    /// A problem that does not show itself.
+    #[error("nothing is to be seen of {problem}: its environment does not say how it looks (`Environment::look`)")]
+    Unseen {
+        /// The problem.
+        problem: String,
+    },
+    /// Episodes for a page cannot be run.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
     /// A grasping task that cannot be.
     #[cfg(feature = "mujoco")]
     #[error(transparent)]
@@ -121,4 +131,12 @@ pub enum PlayError {
         /// What the system says.
         source: std::io::Error,
     },
+}
+
+impl PlayError {
+    /// Whether there is nothing to render with on this machine.
+    #[cfg(feature = "renderer")]
+    pub fn is_without_renderer(&self) -> bool {
+        matches!(self, Self::Picture(hwasp_mujoco::engine::PictureError::NoContext(_)))
+    }
 }

@@ -25,15 +25,15 @@ pub enum ExportError {
     /// No episode from which states could be taken for samples.
     #[error(transparent)]
     Rollout(#[from] RolloutError),
-    /// A form of the mechanism of a run without one.
-    #[error(
-        "{problem} has no mechanism to write as {kind}; those of z-grasp and 3d-grasp are written as mjcf, urdf, stl and scad"
-    )]
+    /// A form of the mechanism that runs of the problem do not have.
+    #[error("runs of {problem} are not written as {kind}: they are as {}", .kinds.join(", "))]
     NoMechanism {
         /// The form.
         kind: &'static str,
         /// The problem.
         problem: String,
+        /// Those that there are.
+        kinds: Vec<&'static str>,
     },
     /// A mechanism that cannot have the design.
     #[error(transparent)]

@@ -90,7 +90,8 @@ impl Source {
     }
 
     fn none(&self, kind: Kind) -> ExportError {
-        ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name().to_owned() }
+        let kinds = Kind::ALL.iter().filter(|kind| kind.is_of(&self.spec)).map(|kind| kind.name()).collect();
+        ExportError::NoMechanism { kind: kind.name(), problem: self.spec.task.name().to_owned(), kinds }
     }
 
     /// The design as built, SI.

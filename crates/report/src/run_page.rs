@@ -16,7 +16,10 @@ pub(crate) fn page(run: &Run) -> Result<Page, RunError> {
     if let Some(hand) = &run.design.hand {
         sections.extend([hand::section(hand), parts::section(run)]);
     }
-    sections.extend([tolerances::section(run), law::section(run), provenance::section(run)]);
+    sections.push(tolerances::section(run));
+    // A world may have no law: its design is in the model.
+    sections.extend((!run.spec.task.built().training.env.effort.is_empty()).then(|| law::section(run)));
+    sections.push(provenance::section(run));
     let (kind, lead) = ("Run", run.spec.description.clone());
     Ok(Page { title: run.title(), kind, lead, figures: key_figures(run), sections })
 }

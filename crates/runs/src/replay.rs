@@ -31,6 +31,14 @@ pub enum ReplayError {
         /// The file.
         path: PathBuf,
     },
+    /// The end of a training.
+    #[error(
+        "{path} is of the end of its training: no iteration follows; name an earlier checkpoint of the run, or one of `faults`"
+    )]
+    End {
+        /// The file.
+        path: PathBuf,
+    },
     /// The run folder or the file.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -68,6 +76,9 @@ pub fn replay(path: &Path, catalogue: &Catalogue, executor: &dyn Executor) -> Re
     let fault = Header::read(&bytes).map_err(checkpoint_error)?.fault;
     if assembly.experiment().method.searches() {
         return Err(ReplayError::Search { path: path.to_owned() });
+    }
+    if !assembly.iterates(checkpoint.env_steps) {
+        return Err(ReplayError::End { path: path.to_owned() });
     }
     let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };
     let archive = &checkpoint.archive;

@@ -19,11 +19,14 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
         methods.first().map_or(vec![], |m| m.design_totals.iter().map(|(g, _)| g.as_str()).collect());
     let threshold = comparison.threshold.map_or(NONE.to_owned(), |threshold| format!("{threshold:.1}"));
     let _ = write!(text, "| method | finished | evaluation | area under curve | steps to {threshold} |");
-    for group in &groups {
-        let _ = write!(text, " {} | error |", text::markdown(group));
+    // Whether a best total is known, from which the others are off.
+    let known = |group: &&str| methods.iter().any(|m| m.design_error.iter().any(|(of, _)| of == group));
+    let groups: Vec<(&str, bool)> = groups.into_iter().map(|group| (group, known(&group))).collect();
+    for (group, known) in &groups {
+        let _ = write!(text, " {} |{}", text::markdown(group), if *known { " error |" } else { "" });
     }
     text.push_str(" steps | smallest piece | time |\n|---|---|---|---|---|");
-    text.push_str(&"---|---|".repeat(groups.len()));
+    text.extend(groups.iter().map(|(_, known)| if *known { "---|---|" } else { "---|" }));
     text.push_str("---|---|---|\n");
     for m in methods {
         text.push_str(&row(m, &groups));
@@ -32,7 +35,7 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
         "\nInterquartile means over the seeds that finished, with 95 % bootstrap intervals. *Evaluation*: discounted return of the\n\
          deterministic policy on held-out starts, on the hardware as built. *Area under curve*: mean discounted return of training\n\
          over the budget. *Steps to*: median real steps until the mean of the last 11 iterations reached that return. Design\n\
-         totals are as built, lowest to highest seed; *error* is their distance from the known optimum. All steps are real\n\
+         totals are as built, lowest to highest seed, SI; *error* is their distance from the known optimum. All steps are real\n\
          simulator steps, those of every candidate and every training inside a search included. A method spends its budget in\n\
          pieces that it takes whole or not at all: episodes, or generations of a search.\n",
     );
@@ -62,7 +65,7 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
     text
 }
 
-fn row(m: &MethodFigures, groups: &[&str]) -> String {
+fn row(m: &MethodFigures, groups: &[(&str, bool)]) -> String {
     let seeds = if m.seeds == 1 { "1 seed".to_owned() } else { format!("{} seeds", m.seeds) };
     let figure = |figure: Option<Figure>, decimals: usize| match figure {
         Some(Figure { iqm, interval: None }) => format!("{iqm:.decimals$} ({seeds})"),
@@ -79,12 +82,19 @@ fn row(m: &MethodFigures, groups: &[&str]) -> String {
         m.threshold.seeds,
         m.seeds
     );
-    for group in groups {
+    for (group, known) in groups {
         let error = m.design_error.iter().find(|(g, _)| g == group).map(|(_, f)| *f);
         let totals = m.design_totals.iter().find(|(g, _)| g == group).map_or(&[][..], |(_, t)| t);
         let (low, high) = totals.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &t| (l.min(t), h.max(t)));
-        let totals = if low <= high { format!("{low:.4} to {high:.4}") } else { NONE.to_owned() };
-        let _ = write!(text, " {totals} | {} |", figure(error, 4));
+        let totals = match (format!("{low:.4}"), format!("{high:.4}")) {
+            _ if low > high => NONE.to_owned(),
+            (low, high) if low == high => low,
+            (low, high) => format!("{low} to {high}"),
+        };
+        let _ = write!(text, " {totals} |");
+        if *known {
+            let _ = write!(text, " {} |", figure(error, 4));
+        }
     }
     let failed = match m.failed_candidates {
         0 => String::new(),

@@ -1,5 +1,6 @@
 //! What was optimised.
 
+use hwasp_core::split_quantity;
 use hwasp_experiment::{Experiment, Method};
 use hwasp_runs::text::grouped;
 use maud::{Markup, html};
@@ -28,10 +29,28 @@ pub(crate) fn problem(spec: &Experiment) -> String {
     if about.is_empty() { format!("The problem is {}.", spec.task.name()) } else { about.clone() }
 }
 
-/// How learner, controller and hardware were composed.
+/// How learner, controller and hardware were composed, and what becomes of parameters that the model is made from.
 fn method(spec: &Experiment) -> String {
+    let shaped = &spec.task.built().training.env.shaped_by;
+    let groups = spec.task.groups();
+    let in_policy = matches!(spec.method, Method::Hwasp | Method::Minimal);
+    if !in_policy || shaped.is_empty() {
+        return composed(spec, spec.method);
+    }
+    if groups.iter().all(|group| shaped.contains(&group.name)) {
+        return composed(spec, Method::Episode);
+    }
+    format!(
+        "{} What the model is made from ({}) is drawn once an episode and held, and what an episode returns trains the distribution \
+         that it is drawn from.",
+        composed(spec, spec.method),
+        shaped.join(", ")
+    )
+}
+
+fn composed(spec: &Experiment, method: Method) -> String {
     let learner = spec.learner.title();
-    match spec.method {
+    match method {
         Method::Hwasp => format!(
             "The law of the mechanism is a part of the policy, and its parameters are trained with the controller's weights by \
              policy gradients ({learner}). This is the method of Chen, He and Ciocarlie, Hardware as Policy (CoRL 2020)."
@@ -87,21 +106,66 @@ fn task(run: &Run) -> Markup {
             thead { tr { th scope="col" { "key" } th scope="col" { "value" } } }
             tbody {
                 @for (key, value) in task.into_iter().flatten() {
-                    tr { th scope="row" { (spaced(key)) } td { (told(value)) } }
+                    @if value.as_str() != Some("") { tr { th scope="row" { (spaced(key)) } td { (told(value)) } } }
                 }
             }
         }
     }
 }
 
-/// A value without the marks of its notation.
-fn told(value: &toml::Value) -> String {
+/// A value without the marks of its notation; tables in lines.
+fn told(value: &toml::Value) -> Markup {
+    match value {
+        toml::Value::Table(table) => html! {
+            @for (i, (key, value)) in table.iter().enumerate() { @if i > 0 { br; } (key) " = " (plain(value)) }
+        },
+        value => html! { (plain(value)) },
+    }
+}
+
+/// The same in a line.
+fn plain(value: &toml::Value) -> String {
     match value {
         toml::Value::String(text) => text.clone(),
-        toml::Value::Array(values) => {
-            let values: Vec<String> = values.iter().map(told).collect();
-            values.join(if values.len() == 2 { " to " } else { ", " })
+        // Two quantities are limits; two of anything else are a list.
+        toml::Value::Array(values) => match &values[..] {
+            [low, high] if is_quantity(low) && is_quantity(high) => format!("{} to {}", plain(low), plain(high)),
+            values => values.iter().map(plain).collect::<Vec<_>>().join(", "),
+        },
+        toml::Value::Table(table) => {
+            table.iter().map(|(key, value)| format!("{key} {}", plain(value))).collect::<Vec<_>>().join("; ")
         }
         other => other.to_string(),
+    }
+}
+
+/// Whether a value is a number, with a unit or without.
+fn is_quantity(value: &toml::Value) -> bool {
+    match value {
+        toml::Value::Integer(_) | toml::Value::Float(_) => true,
+        toml::Value::String(text) => {
+            let (number, unit) = split_quantity(text);
+            number.parse::<f64>().is_ok() && !unit.contains(|c: char| " ([".contains(c))
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A list of two formulas was told as a range.
+    #[test]
+    fn limits_are_ranges_and_lists_are_lists() {
+        let told = |text: &str| told(&text.parse::<toml::Table>().unwrap()["x"]).into_string();
+        assert_eq!(told("x = [1, 2.5]"), "1 to 2.5");
+        assert_eq!(told("x = [\"-8 N*m\", \"8 N*m\"]"), "-8 N*m to 8 N*m");
+        assert_eq!(told("x = [\"joint.*.pos[1:]\", \"2 * qvel\"]"), "joint.*.pos[1:], 2 * qvel");
+        assert_eq!(told("x = [\"box\", \"sphere\"]"), "box, sphere");
+        assert_eq!(
+            told("x = { a = { limits = [0, \"3 m\"], sets = [\"b = a\"] }, c = \"d < 1\" }"),
+            "a = limits 0 to 3 m; sets b = a<br>c = d &lt; 1"
+        );
     }
 }

@@ -15,7 +15,14 @@ pub(crate) fn section(run: &Run) -> Section {
     let body = html! {
         p { "The training again, to the same numbers on any number of threads:" }
         (command(&format!("hwasp train {} --out again", quoted(&run.path.join(EXPERIMENT).to_string_lossy()))))
-        p { "Without the folder: save the text below as " code { (EXPERIMENT) } " and train that." }
+        p {
+            "Without the folder: save the text below as " code { (EXPERIMENT) }
+            @if !run.spec.files().is_empty() {
+                " with the files that it names beside it ("
+                @for (i, path) in run.spec.files().keys().enumerate() { @if i > 0 { ", " } code { (path) } } ")"
+            }
+            " and train that."
+        }
         details { summary { "The experiment, every setting resolved" } pre { code { (run.experiment) } } }
         table {
             caption { "The training" }

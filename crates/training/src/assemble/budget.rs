@@ -30,6 +30,11 @@ pub(crate) enum Portion {
 }
 
 impl Assembly {
+    /// Whether an iteration follows so many steps, in a training by gradients.
+    pub fn iterates(&self, env_steps: u64) -> bool {
+        self.portion(env_steps).is_some()
+    }
+
     /// What the iteration that follows so many steps takes; none where the budget is spent.
     ///
     /// Iterations are as the experiment has them, but for the last: it takes what is left, from half to one and a half times

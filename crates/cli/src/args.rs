@@ -88,7 +88,7 @@ pub(crate) enum Command {
     Tolerances(TolerancesArgs),
     /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
     Replay(ReplayArgs),
-    /// Draw grasps of a run: held-out episodes as films, and on one sheet (in builds with the feature `renderer`)
+    /// Draw held-out episodes of a run: as a film for a browser, and grasps as GIF and on one sheet where EGL is at hand
     Play(PlayArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
@@ -219,6 +219,26 @@ pub(crate) struct TrainArgs {
     pub(crate) quiet: bool,
 }
 
+/// Worlds that are nearer to the built robot than the law, held for a step of the controller.
+#[derive(Debug, clap::Args)]
+pub(crate) struct NearerArgs {
+    /// On the hand with the engine's own tendons and springs, at 1 kHz, instead of the law: as near to the built hand as
+    /// simulation goes
+    #[arg(long)]
+    pub(crate) native_tendons: bool,
+    /// How often the law of a robot from a model acts: with every step of the controller, and held in between, as in training, or with
+    /// every step of the physics
+    #[arg(long, value_name = "RATE", default_value = "step", conflicts_with = "native_tendons")]
+    pub(crate) law_rate: LawRateArg,
+}
+
+/// How often a law acts. What the values mean stands at the option, for which clap keeps its short form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LawRateArg {
+    Step,
+    Physics,
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct EvalArgs {
     /// A run folder, as `hwasp train` writes one
@@ -229,11 +249,9 @@ pub(crate) struct EvalArgs {
     /// Evaluate under another value of the experiment, such as `task.disturbance_force="0.2 N"`; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// On the hand with the engine's own tendons and springs, at 1 kHz, instead of the law: as near to the built hand as
-    /// simulation goes
-    #[arg(long)]
-    pub(crate) native_tendons: bool,
-    /// Print the rate of success of every shape of object too
+    #[command(flatten)]
+    pub(crate) nearer: NearerArgs,
+    /// Print the rate of success of every kind of episode too, of an object's shape for one
     #[arg(long)]
     pub(crate) per_shape: bool,
     /// Print JSON, for scripts
@@ -253,7 +271,7 @@ pub(crate) struct ReplayArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlayArgs {
-    /// A run folder of a grasping problem, as `hwasp train` writes one
+    /// A run folder, as `hwasp train` writes one
     #[arg(value_parser = path())]
     pub(crate) run: PathBuf,
     /// Episodes
@@ -268,16 +286,15 @@ pub(crate) struct PlayArgs {
     /// Play under another value of the experiment, such as `task.disturbance_force="0.2 N"`; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// On the hand with the engine's own tendons and springs, as `hwasp eval` does
-    #[arg(long)]
-    pub(crate) native_tendons: bool,
+    #[command(flatten)]
+    pub(crate) nearer: NearerArgs,
     /// The folder of the pictures; those of the same name are replaced [default: play/ in the run folder]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
-    /// Pixels across of a picture
+    /// Pixels across of a GIF
     #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
     pub(crate) width: u64,
-    /// Pixels down of a picture
+    /// Pixels down of a GIF
     #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
     pub(crate) height: u64,
 }

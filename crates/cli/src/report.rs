@@ -11,6 +11,7 @@ use hwasp_experiment::Experiment;
 use hwasp_export::{ExportFile, Kind};
 use hwasp_runs::text::{grouped, quantity};
 use hwasp_runs::{Replay, Summary};
+use hwasp_training::StandInKind;
 use hwasp_training::stats::{Interval, LEAST_VALUES};
 use hwasp_training::{Checkpoint, Evaluation, MeanInterval};
 
@@ -82,7 +83,7 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         }
     }
     let _ = writeln!(text);
-    text.push_str(&evaluation(&summary.evaluation, true));
+    text.push_str(&evaluation(&summary.evaluation, true, None));
     let _ = writeln!(
         text,
         "\n  {}: design.toml, policy.safetensors, curves.svg, metrics.csv, summary.json",
@@ -98,8 +99,17 @@ pub(crate) fn under(assignments: &[String]) -> String {
     if set.is_empty() { String::new() } else { format!("  under {}:\n", set.join(", ")) }
 }
 
-/// An evaluation; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
-pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
+/// The world that a run is judged in.
+pub(crate) fn world(nearer: Option<StandInKind>) -> &'static str {
+    match nearer {
+        None => "hardware as built",
+        Some(StandInKind::NativeTendons) => "native tendons",
+        Some(StandInKind::FastLaw) => "law at the rate of the physics",
+    }
+}
+
+/// An evaluation in a [`world`]; the rates of success of each kind of episode, an object's shape for one, only `per_kind`.
+pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool, nearer: Option<StandInKind>) -> String {
     let counted = evaluation.episodes - evaluation.discarded_episodes.min(evaluation.episodes);
     let line = |name: &str, m: &MeanInterval| {
         let interval = match m.interval {
@@ -112,8 +122,10 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool) -> String {
         format!("  {name:<20} {:>10.2}   {interval}\n", m.mean)
     };
     let mut text = format!(
-        "  deterministic policy, {} held-out starts (seed {}), hardware as built:\n",
-        evaluation.episodes, evaluation.seed
+        "  deterministic policy, {} held-out starts (seed {}), {}:\n",
+        evaluation.episodes,
+        evaluation.seed,
+        world(nearer)
     );
     text.push_str(&line("discounted return", &evaluation.discounted_return));
     text.push_str(&line("return", &evaluation.undiscounted_return));
@@ -153,8 +165,7 @@ pub(crate) fn exported(spec: &Experiment, out: &Path, files: &[ExportFile], left
     }
     if !left_out.is_empty() {
         let kinds: Vec<&str> = left_out.iter().map(|kind| kind.name()).collect();
-        let problem = spec.task.name();
-        let _ = writeln!(text, "  without {}: {problem} has no hand", kinds.join(", "));
+        let _ = writeln!(text, "  without {}: {} has none", kinds.join(", "), spec.task.name());
     }
     text
 }
@@ -185,7 +196,7 @@ mod tests {
     fn rates_of_shapes_are_told_if_asked_for() {
         let hand = counted(&["all", "box", "sphere"]);
         let lines = |per_kind| -> Vec<String> {
-            let text = evaluation(&hand, per_kind);
+            let text = evaluation(&hand, per_kind, None);
             text.lines().skip(3).map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
         };
         let rate = "75.0% 3 of 4, 95 % interval [30.0, 95.0]";
@@ -196,15 +207,15 @@ mod tests {
     #[test]
     fn tasks_without_success_say_nothing_of_it() {
         let gear = counted(&[]);
-        assert_eq!(evaluation(&gear, false), evaluation(&gear, true));
-        assert_eq!(evaluation(&gear, true).lines().count(), 3);
+        assert_eq!(evaluation(&gear, false, None), evaluation(&gear, true, None));
+        assert_eq!(evaluation(&gear, true, None).lines().count(), 3);
     }
 
     #[test]
     fn the_terms_of_the_reward_stand_below_their_sum() {
         let named =
             Evaluation { terms: [("effort".to_owned(), -0.25), ("forward".to_owned(), 1.25)].into(), ..counted(&[]) };
-        let text = evaluation(&named, false);
+        let text = evaluation(&named, false, None);
         assert_eq!(
             text.lines().skip(3).collect::<Vec<_>>(),
             ["    effort                  -0.25", "    forward                  1.25"]

@@ -4,7 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 
 use hwasp_problem::{
-    AnyError, Built, Changed, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, Role, Words, World,
+    AnyError, Built, Changed, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, Role, StandIn, StandInKind, Words,
+    World,
 };
 use hwasp_settings::Folder;
 
@@ -51,8 +52,11 @@ impl Problem for ModelProblem {
             World::described(robot.law.clone(), robot.env.clone(), Arc::new(environments))
         };
         let mut built = Built::of(world(false), world(false));
-        let fast = world(true);
-        built.stand_in = Some(Arc::new(move |_: &[f64]| Ok(fast.clone())));
+        if !robot.env.effort.is_empty() {
+            let fast = world(true);
+            let make = Arc::new(move |_: &[f64]| Ok(fast.clone()));
+            built.stand_in = Some(StandIn { kind: StandInKind::FastLaw, make });
+        }
         built.mechanism = Some(Arc::new(Model(Arc::clone(robot))));
         built.files = Arc::clone(&settings.files);
         built.effort_std = effort_std(robot);
@@ -61,13 +65,45 @@ impl Problem for ModelProblem {
     }
 }
 
-/// What the parameters of the design do, and the terms of the reward.
+/// What the robot is, what the parameters of its design do, and the terms of the reward.
 fn words(settings: &ModelSettings, robot: &Robot) -> Words {
     let names = robot.law.design().names();
     let design: Vec<(String, String)> = names.into_iter().zip(robot.uses.iter().cloned()).collect();
     let ports = |role, of: Vec<(String, String)>| of.into_iter().map(move |(name, meaning)| (role, name, meaning));
     let ports = ports(Role::Design, design).chain(ports(Role::Reward, settings.reward.clone())).collect();
-    Words { ports, ..Words::default() }
+    Words { about: about(settings, robot), ports }
+}
+
+/// The robot, its purpose and what of it is designed.
+fn about(settings: &ModelSettings, robot: &Robot) -> String {
+    let inventory = robot.simulation().inventory();
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let mut parts = vec![count(inventory.joints.len(), "joint"), count(inventory.actuators.len(), "actuator")];
+    parts.extend((!inventory.tendons.is_empty()).then(|| count(inventory.tendons.len(), "tendon")));
+    let mass = inventory.bodies.first().map_or(0.0, |world| world.subtree_mass);
+    let design: Vec<&str> = settings.design.iter().map(|parameter| &*parameter.name).collect();
+    let shaping = match &robot.env.shaped_by[..] {
+        [] => String::new(),
+        shaping => format!(" The model is made from {}.", listed(shaping.iter().map(String::as_str))),
+    };
+    format!(
+        "The robot is {}: {}, {:.3} kg as the design begins. The reward is the sum of {}. Designed: {}.{shaping}",
+        settings.model,
+        parts.join(", "),
+        mass,
+        listed(robot.env.terms.iter().map(String::as_str)),
+        listed(design),
+    )
+}
+
+/// Names in a sentence: `a, b and c`.
+fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    match &names[..] {
+        [] => String::new(),
+        [only] => (*only).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
 }
 
 /// The share of what commands can do to an effort that it is explored by, as commands are by a share of their range.
@@ -148,12 +184,18 @@ impl Mechanism for Model {
             }
         }
         let text = making.to_mjcf()?;
-        let main = ModelFile { name: "robot.xml".to_owned(), contents: text.into_bytes() };
-        let assets = robot.files.iter().filter(|(path, _)| {
-            let ending = path.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-            !matches!(ending.as_str(), "xml" | "urdf" | "mjcf")
-        });
-        let assets = assets.map(|(path, bytes)| ModelFile { name: path.to_owned(), contents: bytes.to_vec() });
+        let assets = || {
+            robot.files.iter().filter(|(path, _)| {
+                let ending = path.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+                !matches!(ending.as_str(), "xml" | "urdf" | "mjcf")
+            })
+        };
+        // The model looks for its files from where it lies. Its own folder goes without saying, unless a file lies elsewhere.
+        let folder = robot.main.rfind('/').map_or("", |end| &robot.main[..=end]);
+        let dropped = if assets().all(|(path, _)| path.starts_with(folder)) { folder.len() } else { 0 };
+        let main = ModelFile { name: format!("{}robot.xml", &folder[dropped..]), contents: text.into_bytes() };
+        let assets =
+            assets().map(|(path, bytes)| ModelFile { name: path[dropped..].to_owned(), contents: bytes.to_vec() });
         Ok(std::iter::once(main).chain(assets).collect())
     }
 }

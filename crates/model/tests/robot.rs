@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use hwasp_core::{End, Environment, Form, Purpose, stream};
 use hwasp_experiment::{Experiment, Files, Folder, Layers, resolve};
+use hwasp_problem::StandInKind;
 use hwasp_testing::catalogue;
 
 /// A load on a slide and a rod on a hinge, without gravity, so that what acts is what a test applies.
@@ -135,7 +136,9 @@ fn the_law_at_the_rate_of_the_physics() {
                 [task.design]\nstiffness = { limits = [\"1 N/m\", \"3999 N/m\"] }\n";
     let experiment = experiment(text);
     let built = experiment.task.built();
-    let fast = built.stand_in.as_ref().unwrap()(&[2000.0]).unwrap();
+    let stand_in = built.stand_in.as_ref().unwrap();
+    assert_eq!(stand_in.kind, StandInKind::FastLaw);
+    let fast = (stand_in.make)(&[2000.0]).unwrap();
     let mut robot = fast.make.make(None);
     robot.set_design(&[2000.0]);
     begin(&mut *robot, 0);

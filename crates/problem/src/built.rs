@@ -10,8 +10,26 @@ use crate::mechanism::Mechanism;
 use crate::words::Words;
 use crate::world::World;
 
-/// From a design (SI) to the world that comes nearest to the built robot, in which the law may have no say.
-pub type StandIn = Arc<dyn Fn(&[f64]) -> Result<World, AnyError> + Send + Sync>;
+/// How the world that stands in for the built robot comes nearer to it than the law, held for a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StandInKind {
+    /// It has tendons and springs of the engine's own, and the law has no say.
+    NativeTendons,
+    /// The law acts at the rate of the physics.
+    FastLaw,
+}
+
+/// The world that comes nearest to the built robot.
+#[derive(Clone)]
+pub struct StandIn {
+    /// How it does so.
+    pub kind: StandInKind,
+    /// From a design (SI) to the world.
+    pub make: Arc<MakeWorld>,
+}
+
+/// From a design, SI, to a world.
+pub type MakeWorld = dyn Fn(&[f64]) -> Result<World, AnyError> + Send + Sync;
 
 /// A problem: where one trains, where the result has to work, and what is known of it.
 #[derive(Clone)]

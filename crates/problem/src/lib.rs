@@ -53,7 +53,7 @@ mod problem;
 mod words;
 mod world;
 
-pub use built::{Built, StandIn};
+pub use built::{Built, MakeWorld, StandIn, StandInKind};
 pub use error::{AnyError, FaultsTold};
 pub use mechanism::{Changed, Mechanism, ModelFile, ModelFormat};
 pub use problem::{AnyProblem, Preset, Problem};

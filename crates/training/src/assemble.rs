@@ -32,7 +32,9 @@ pub enum AssembleError {
     #[error(transparent)]
     Placement(#[from] PlacementError),
     /// A problem without a world that stands in for the built robot.
-    #[error("{problem} has no mechanism of the engine's own; z-grasp and 3d-grasp have")]
+    #[error(
+        "{problem} has no world that is nearer to the built robot; z-grasp and 3d-grasp have one, and model where it has a law"
+    )]
     NoNative {
         /// The problem.
         problem: String,
@@ -184,8 +186,8 @@ impl Assembly {
         Ok(HardwarePolicy::new(spec, &world.env)?)
     }
 
-    /// The world that stands in for the robot built to this `design` (SI): the hand with the engine's own tendons and springs, at
-    /// the rate of the simulation, in which the law has no say.
+    /// The world that stands in for the robot built to this `design` (SI), as its [kind](hwasp_problem::StandInKind) says: the hand with
+    /// the engine's own tendons and springs, a robot from a model with the law at the rate of the physics.
     pub fn native(&self, design: &[f64]) -> Result<World, AssembleError> {
         let (given, needed) = (design.len(), self.policy.space().len());
         if given != needed {
@@ -194,7 +196,7 @@ impl Assembly {
         let task = &self.experiment.task;
         let none = || AssembleError::NoNative { problem: task.name().to_owned() };
         let stand_in = task.built().stand_in.as_ref().ok_or_else(none)?;
-        let world = stand_in(design).map_err(|error| AssembleError::Physics(error.to_string()))?;
+        let world = (stand_in.make)(design).map_err(|error| AssembleError::Physics(error.to_string()))?;
         world.ready().map_err(AssembleError::Physics)?;
         Ok(world.with_horizon(task.horizon))
     }

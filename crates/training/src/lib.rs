@@ -33,7 +33,7 @@ pub use error::TrainError;
 pub use evaluate::{evaluate, evaluate_by, evaluate_in, evaluate_native, evaluate_native_by, held_out, sampler};
 pub use evaluation::{EvaluateError, Evaluation, MeanInterval, SuccessRate};
 pub use hwasp_experiment::total_name;
-pub use hwasp_problem::World;
+pub use hwasp_problem::{StandInKind, World};
 pub use learned::TRAILING;
 pub use metrics::MetricsRow;
 pub use observer::{Event, FailedIteration, Observer, ObserverError};

@@ -4,7 +4,7 @@ use hwasp_experiment::Catalogue;
 use hwasp_training::{EvaluateError, Evaluation, evaluate, evaluate_native};
 use serde::Serialize;
 
-use super::{executor, saved_run};
+use super::{executor, saved_run, stand_in};
 use crate::args::EvalArgs;
 use crate::failure::Failure;
 use crate::{output, report};
@@ -23,7 +23,8 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
     let params = saved.params().map_err(Failure::input)?;
     let asked = args.held_out.asked(&saved.assembly().experiment().train);
     let executor = executor(args.held_out.threads)?;
-    let evaluation = if args.native_tendons {
+    let nearer = stand_in(&args.nearer, saved.assembly())?;
+    let evaluation = if nearer.is_some() {
         evaluate_native(saved.assembly(), &params, asked, &*executor)
     } else {
         evaluate(saved.assembly(), &params, asked, &*executor)
@@ -34,13 +35,13 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
     })?;
     if args.per_shape && evaluation.success.is_empty() {
         let task = saved.assembly().experiment().task.name();
-        output::remark(&format!("note: {task} knows neither success nor shapes"));
+        output::remark(&format!("note: {task} knows no success here, and so no rates of it"));
     }
     let text = if args.json {
         let judged = Judged { evaluation: &evaluation, under: &args.set };
         format!("{}\n", serde_json::to_string_pretty(&judged)?)
     } else {
-        report::under(&args.set) + &report::evaluation(&evaluation, args.per_shape)
+        report::under(&args.set) + &report::evaluation(&evaluation, args.per_shape, nearer)
     };
     Ok(output::print(&text)?)
 }

@@ -30,9 +30,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_experiment::{Catalogue, Experiment, Layers, load, resolve};
 use hwasp_runs::SavedRun;
-use hwasp_training::Assembly;
+use hwasp_training::{Assembly, StandInKind};
 
-use crate::args::SettingsArgs;
+use crate::args::{LawRateArg, NearerArgs, SettingsArgs};
 use crate::failure::{Failure, OTHER_FILE};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
@@ -74,6 +74,30 @@ fn experiment(
 /// The run that was written to a folder.
 fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
     SavedRun::open_with(run_folder(path)?, set, catalogue).map_err(Failure::input)
+}
+
+/// The world nearer to the built robot that was asked for, if one was.
+fn stand_in(asked: &NearerArgs, assembly: &Assembly) -> Result<Option<StandInKind>, Failure> {
+    let asked = match (asked.native_tendons, asked.law_rate) {
+        (true, _) => StandInKind::NativeTendons,
+        (false, LawRateArg::Physics) => StandInKind::FastLaw,
+        (false, LawRateArg::Step) => return Ok(None),
+    };
+    let task = &assembly.experiment().task;
+    let there = task.built().stand_in.as_ref().map(|stand_in| stand_in.kind);
+    if there == Some(asked) {
+        return Ok(there);
+    }
+    let wanted = match asked {
+        StandInKind::NativeTendons => "world with tendons in the place of its law; z-grasp and 3d-grasp have one",
+        StandInKind::FastLaw => "world with its law at the rate of the physics; model has one, where it has a law",
+    };
+    let error = Failure::input(format!("{} has no {wanted}", task.name()));
+    Err(match there {
+        Some(StandInKind::NativeTendons) => error.hint("--native-tendons is nearer to the built robot here"),
+        Some(StandInKind::FastLaw) => error.hint("--law-rate physics is nearer to the built robot here"),
+        None => error,
+    })
 }
 
 /// The folder of a run, if there is a folder at all.

@@ -1,43 +1,33 @@
 //! `hwasp play`.
 
+use std::fs;
+use std::path::Path;
+
 use hwasp_experiment::Catalogue;
-use hwasp_report::play;
+use hwasp_report::play::{self, PlayError, PlayOptions};
 use hwasp_runs::SavedRun;
 
-use super::saved_run;
+use super::{saved_run, stand_in};
 use crate::args::PlayArgs;
 use crate::failure::Failure;
+use crate::{output, report};
 
 pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &args.set, catalogue)?;
     let params = saved.params().map_err(Failure::input)?;
-    play::check(saved.assembly()).map_err(Failure::input)?;
-    draw(args, &saved, &params)
-}
-
-#[cfg(not(feature = "renderer"))]
-fn draw(_: &PlayArgs, _: &SavedRun, _: &[f32]) -> Result<(), Failure> {
-    Err(Failure::input(
-        "this program was built without the renderer and can draw no episodes\n  = hint: build it with the feature \
-         `renderer`: cargo run --release --features renderer -- play RUN",
-    ))
-}
-
-#[cfg(feature = "renderer")]
-fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure> {
-    use crate::{output, report};
-
     let spec = saved.assembly().experiment();
-    let options = play::PlayOptions {
+    let nearer = stand_in(&args.nearer, saved.assembly())?;
+    let options = PlayOptions {
         first: args.first,
         episodes: args.episodes,
         seed: args.seed.unwrap_or(spec.train.evaluation_seed),
-        native: args.native_tendons,
+        native: nearer.is_some(),
         size: [args.width as usize, args.height as usize],
     };
     let mut title = format!("{} · {} · held-out starts of seed {}", spec.name, spec.method.name(), options.seed);
-    if options.native {
-        title.push_str(" · native tendons");
+    if let Some(kind) = nearer {
+        title.push_str(" · ");
+        title.push_str(report::world(Some(kind)));
     }
     let under = report::under(&args.set);
     if !under.is_empty() {
@@ -45,15 +35,42 @@ fn draw(args: &PlayArgs, saved: &SavedRun, params: &[f32]) -> Result<(), Failure
         title.push_str(under.trim().trim_end_matches(':'));
         output::print(&under)?;
     }
+    let page = play::page(saved.assembly(), &params, &options, &title).map_err(|error| match error {
+        error @ (PlayError::Unseen { .. } | PlayError::Assemble(_)) => Failure::input(error),
+        error => error.into(),
+    })?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join("play"));
+    let path = out.join("film.html");
+    let written = fs::create_dir_all(&out).and_then(|()| fs::write(&path, page));
+    written.map_err(|source| PlayError::Write { path: path.clone(), source })?;
+    output::print(&format!("  {}\n", path.display()))?;
+    // What grasps is rendered as well.
+    if play::check(saved.assembly()).is_ok() { draw(&saved, &params, &options, (&title, &out)) } else { Ok(()) }
+}
+
+#[cfg(not(feature = "renderer"))]
+fn draw(_: &SavedRun, _: &[f32], _: &PlayOptions, _: (&str, &Path)) -> Result<(), Failure> {
+    output::remark("note: this program was built without the feature `renderer`, and renders no GIF");
+    Ok(())
+}
+
+#[cfg(feature = "renderer")]
+fn draw(saved: &SavedRun, params: &[f32], options: &PlayOptions, place: (&str, &Path)) -> Result<(), Failure> {
     let mut told = Ok(());
-    let sheet = play::play(saved.assembly(), params, &options, (&title, &out), &mut |played| {
+    let sheet = play::play(saved.assembly(), params, options, place, &mut |played| {
         let verdict = if played.success { "success" } else { "failure" };
         let line = format!("  episode {:<4} {:<10} {verdict}  {}\n", played.index, played.shape, played.path.display());
         if told.is_ok() {
             told = output::print(&line);
         }
-    })?;
+    });
     told?;
-    Ok(output::print(&format!("  {}\n", sheet.display()))?)
+    match sheet {
+        Ok(sheet) => Ok(output::print(&format!("  {}\n", sheet.display()))?),
+        Err(error) if error.is_without_renderer() => {
+            output::remark(&format!("note: {error}; the film above needs none of it"));
+            Ok(())
+        }
+        Err(error) => Err(error.into()),
+    }
 }

@@ -54,7 +54,7 @@ fn an_evaluation_of_other_episodes() {
 fn shapes_of_what_has_none() {
     let output = Sandbox::with_run("eval-shapes").run("eval run --per-shape");
     assert!(output.status.success());
-    assert_eq!(String::from_utf8_lossy(&output.stderr), "note: reach knows neither success nor shapes\n");
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "note: reach knows no success here, and so no rates of it\n");
 }
 
 #[test]

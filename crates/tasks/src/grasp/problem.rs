@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hwasp_core::{Law, MakeEnvironment};
-use hwasp_problem::{AnyError, Built, Preset, Problem, Role, Words, World};
+use hwasp_problem::{AnyError, Built, Preset, Problem, Role, StandIn, StandInKind, Words, World};
 
 use super::env::env_spec;
 use super::{GraspTaskSettings, Viewpoint};
@@ -94,7 +94,7 @@ impl Problem for GraspProblem {
             effort_std: vec![Some(0.02); training.env.effort.len()],
             words: words(self.palm, task.viewpoint),
             mechanism: Some(Arc::new(task.hand())),
-            stand_in: Some(Arc::new(stand_in)),
+            stand_in: Some(StandIn { kind: StandInKind::NativeTendons, make: Arc::new(stand_in) }),
             ..Built::of(training, deployment)
         })
     }

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 
 use hwasp_problem::{
-    AnyError, Built, Changed, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, Role, StandIn, StandInKind, Words,
-    World,
+    AnyError, Built, Changed, FaultsTold, Mechanism, ModelFile, ModelFormat, Preset, Problem, Role, StandIn,
+    StandInKind, Words, World,
 };
 use hwasp_settings::Folder;
 

@@ -21,8 +21,7 @@ pub(super) fn painted(eye: &Eye, solids: &[Solid]) -> Vec<usize> {
             if apart(boxes[a], boxes[b]) {
                 continue;
             }
-            let (back, front) =
-                if shift(eye, &solids[a], &solids[b]) <= shift(eye, &solids[b], &solids[a]) { (a, b) } else { (b, a) };
+            let (back, front) = if in_front(eye, &solids[b], &solids[a]) { (a, b) } else { (b, a) };
             hidden[front] += 1;
             over[back].push(front);
         }
@@ -52,9 +51,19 @@ pub(super) fn seen_box(eye: &Eye, solid: &Solid) -> [f64; 4] {
     [-side([-1.0, 0.0]), -side([0.0, -1.0]), side([1.0, 0.0]), side([0.0, 1.0])]
 }
 
+/// Whether a solid is in front of another one. Where they run through each other alike, the one that stands out more: what chance
+/// decides would flicker.
+fn in_front(eye: &Eye, front: &Solid, back: &Solid) -> bool {
+    let ((forth, normal), (over, _)) = (shift(eye, back, front), shift(eye, front, back));
+    if forth.min(over) > 0.0 && (forth - over).abs() < 0.25 * (forth + over) {
+        return reach(front, normal) >= reach(back, normal);
+    }
+    forth <= over
+}
+
 /// How far a solid has to be moved towards the eye to be in front of another one, m: the least over the planes that may part
-/// them. Negative where there is room.
-fn shift(eye: &Eye, back: &Solid, front: &Solid) -> f64 {
+/// them, with the normal of that plane, towards the eye. Negative where there is room.
+fn shift(eye: &Eye, back: &Solid, front: &Solid) -> (f64, World) {
     let normals = back.axes.iter().chain(&front.axes).copied();
     let more = [cross(back.axes[2], front.axes[2]), along(front.at, -1.0, back.at), eye.towards];
     let needed = |normal: World| {
@@ -63,12 +72,13 @@ fn shift(eye: &Eye, back: &Solid, front: &Solid) -> f64 {
         // A plane that the eye looks along parts nothing that is seen one over the other; axes that are parallel give no plane.
         if slope.abs() > 1e-3 {
             let normal = normal.map(|part| slope.signum() * part / length);
-            (reach(back, normal) + reach(front, normal.map(|part| -part))) / slope.abs()
+            ((reach(back, normal) + reach(front, normal.map(|part| -part))) / slope.abs(), normal)
         } else {
-            f64::INFINITY
+            (f64::INFINITY, normal)
         }
     };
-    normals.chain(more).map(needed).fold(f64::INFINITY, f64::min)
+    let least = |a: (f64, World), b: (f64, World)| if b.0 < a.0 { b } else { a };
+    normals.chain(more).map(needed).fold((f64::INFINITY, eye.towards), least)
 }
 
 #[cfg(test)]
@@ -91,6 +101,18 @@ mod tests {
         // A ball on a large plate whose centre is far in front of it.
         let plate = solid(Form::Box([5.0, 5.0, 0.1]), [0.0, -4.0, -0.1]);
         assert_eq!(painted(&eye, &[ball(0.5, 0.3), plate]), [1, 0]);
+    }
+
+    /// A motor that stands out of both sides of its housing was seen at one moment and hidden at the next.
+    #[test]
+    fn what_runs_through_another_thing_is_seen_where_it_stands_out() {
+        let eye = Eye::new(-1.2, 0.28, 100.0);
+        for jitter in [-1e-9, 0.0, 1e-9] {
+            let housing = solid(Form::Box([0.2, 0.1, 0.08]), [0.0, jitter, 0.0]);
+            let motor = solid(Form::Box([0.05, 0.12, 0.05]), [0.0, 0.0, jitter]);
+            assert_eq!(painted(&eye, &[motor.clone(), housing.clone()]), [1, 0]);
+            assert_eq!(painted(&eye, &[housing, motor]), [0, 1]);
+        }
     }
 
     /// Three bars, each over the next, have no order; every one is painted all the same.

@@ -108,7 +108,7 @@ fn a_run_without_a_hand_has_no_mechanism() {
         assert!(!kind.is_of(source.spec()));
         let error = export(&source, &[kind], None, &folder.join("export")).unwrap_err();
         assert!(matches!(error, ExportError::NoMechanism { ref problem, .. } if problem == "reach"), "{error}");
-        assert!(error.to_string().starts_with(&format!("reach has no mechanism to write as {}", kind.name())));
+        assert!(error.to_string().starts_with(&format!("runs of reach are not written as {}: they are", kind.name())));
     }
     assert!(Kind::Onnx.is_of(source.spec()) && !folder.join("export").exists());
     assert!(Kind::ALL.iter().all(|kind| kind.is_of(Source::open(&shipped("z-grasp"), catalogue()).unwrap().spec())));

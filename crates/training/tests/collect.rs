@@ -195,7 +195,7 @@ fn what_a_worker_cannot_set_up_is_an_answer() {
     let design = wrong(EpisodesRequest { stage: Stage::Deployment(vec![]), ..request.clone() });
     assert_eq!(design, "0 placements for 1 design parameters");
     let stand_in = wrong(EpisodesRequest { stage: Stage::StandIn(vec![1.0]), ..request.clone() });
-    assert!(stand_in.contains("no mechanism of the engine's own"), "{stand_in}");
+    assert!(stand_in.contains("no world that is nearer to the built robot"), "{stand_in}");
     let few = wrong(EpisodesRequest { params: vec![0.0; 3], ..request.clone() });
     assert!(few.contains("`params` of the saved state has 3 elements"), "{few}");
     let text = ExperimentText::from("name = 1".to_owned());

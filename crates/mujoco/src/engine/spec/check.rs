@@ -60,8 +60,7 @@ impl Spec {
         // Until the compiler computes them, such numbers are NaN.
         const COMPUTED: [&str; 5] = ["size", "fromto", "mass", "ipos", "fullinertia"];
         for kind in KINDS {
-            for place in 0.. {
-                let Some(item) = self.item(kind, place) else { break };
+            for (place, item) in self.items(kind).into_iter().enumerate() {
                 for (field, index) in
                     fields(kind).iter().flat_map(|field| (0..field.len).map(move |index| (field, index)))
                 {
@@ -71,9 +70,6 @@ impl Spec {
                         let path = FieldPath::of(kind, place, field.name, index);
                         return self.refuse(format!("`{path}` = {value} is no value for a model"));
                     }
-                }
-                if kind == Kind::Options {
-                    break;
                 }
             }
         }

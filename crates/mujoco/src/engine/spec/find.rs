@@ -60,11 +60,6 @@ impl Item<'_> {
     }
 }
 
-/// The elements of one type.
-fn of_kind<'a, T>(items: impl Iterator<Item = &'a T>, place: usize) -> Option<&'a T> {
-    items.into_iter().nth(place)
-}
-
 impl Spec {
     /// The element that a path names, and its place among those of its kind.
     pub(super) fn find(&self, path: &FieldPath) -> Result<(usize, Item<'_>), SpecError> {
@@ -139,17 +134,23 @@ impl Spec {
 
     /// The element of a kind at a place, if there are so many.
     pub(super) fn item(&self, kind: Kind, place: usize) -> Option<Item<'_>> {
-        Some(match kind {
-            Kind::Body => Item::Body(of_kind(self.inner.body_iter(), place)?),
-            Kind::Geom => Item::Geom(of_kind(self.inner.geom_iter(), place)?),
-            Kind::Joint => Item::Joint(of_kind(self.inner.joint_iter(), place)?),
-            Kind::Site => Item::Site(of_kind(self.inner.site_iter(), place)?),
-            Kind::Actuator => Item::Actuator(of_kind(self.inner.actuator_iter(), place)?),
-            Kind::Tendon => Item::Tendon(of_kind(self.inner.tendon_iter(), place)?),
-            Kind::Equality => Item::Equality(of_kind(self.inner.equality_iter(), place)?),
-            Kind::Options => Item::Options(self.inner.option()),
-            Kind::Camera | Kind::Sensor | Kind::Keyframe => return None,
-        })
+        self.items(kind).into_iter().nth(place)
+    }
+
+    /// The elements of a kind whose fields can be set. The engine walks the whole tree for one as for all.
+    pub(super) fn items(&self, kind: Kind) -> Vec<Item<'_>> {
+        let spec = &self.inner;
+        match kind {
+            Kind::Body => spec.body_iter().map(Item::Body).collect(),
+            Kind::Geom => spec.geom_iter().map(Item::Geom).collect(),
+            Kind::Joint => spec.joint_iter().map(Item::Joint).collect(),
+            Kind::Site => spec.site_iter().map(Item::Site).collect(),
+            Kind::Actuator => spec.actuator_iter().map(Item::Actuator).collect(),
+            Kind::Tendon => spec.tendon_iter().map(Item::Tendon).collect(),
+            Kind::Equality => spec.equality_iter().map(Item::Equality).collect(),
+            Kind::Options => vec![Item::Options(spec.option())],
+            Kind::Camera | Kind::Sensor | Kind::Keyframe => Vec::new(),
+        }
     }
 
     /// Writes one number of an element that [`Self::find`] found, as the text has it.

@@ -45,9 +45,9 @@ fn seen(robot: &dyn Environment) -> Vec<f64> {
 /// Functions in every place: of the user, which read what is there, and of the library.
 #[test]
 fn functions_are_formulas() {
-    let text = |law: &str, mass: &str, start: &str, reward: &str, define: &str| {
+    let text = |law: &str, inertia: &str, start: &str, reward: &str, define: &str| {
         format!(
-            "observe = [\"qvel\"]\nset = [\"geom.load.mass = {mass}\"]\n[task.reward]\nheat = \"{reward}\"\n\
+            "observe = [\"qvel\"]\nset = [\"joint.hinge.armature = {inertia}\"]\n[task.reward]\nheat = \"{reward}\"\n\
              [task.start]\n\"joint.hinge.pos\" = \"{start}\"\n[task.law]\n\"joint.hinge\" = \"{law}\"\n\
              [task.design]\nstiffness = {{ limits = [\"1 N*m/rad\", \"3 N*m/rad\"] }}\n[task.define]\n{define}"
         )

@@ -12,59 +12,22 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use hwasp_core::{EnvSpec, Environment, EpisodeKind, Episodes, Outcome, Sampler, Step, Stream, Threads};
+use hwasp_core::{Environment, EpisodeKind, Episodes, Sampler, Step, Threads, Watch, Watched};
 use hwasp_experiment::{load, resolve};
 use hwasp_training::Assembly;
 use serde_json::json;
 
-/// An environment that adds up the time of its steps.
-struct Timed {
-    inner: Box<dyn Environment>,
+/// Adds up the time of steps.
+struct Timer {
     nanoseconds: Arc<AtomicU64>,
 }
 
-impl Environment for Timed {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_progress(&mut self, progress: f64) {
-        self.inner.set_progress(progress);
-    }
-
-    fn set_design(&mut self, design: &[f64]) {
-        self.inner.set_design(design);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-    }
-
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn context(&self, out: &mut [f64]) {
-        self.inner.context(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+impl Watch for Timer {
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
         let began = Instant::now();
-        let step = self.inner.step(effort, command);
+        let step = inner.step(effort, command);
         self.nanoseconds.fetch_add(began.elapsed().as_nanos() as u64, Ordering::Relaxed);
         step
-    }
-
-    fn outcome(&self) -> Option<Outcome> {
-        self.inner.outcome()
-    }
-
-    fn fault(&self) -> Option<String> {
-        self.inner.fault()
     }
 }
 
@@ -80,7 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (whole, nanoseconds) = (Arc::clone(&assembly.worlds.training.make), Arc::new(AtomicU64::new(0)));
     let counted = Arc::clone(&nanoseconds);
     assembly.worlds.training.make = Arc::new(move |horizon| {
-        Box::new(Timed { inner: whole.make(horizon), nanoseconds: Arc::clone(&counted) }) as Box<dyn Environment>
+        let timer = Timer { nanoseconds: Arc::clone(&counted) };
+        Box::new(Watched::new(whole.make(horizon), timer)) as Box<dyn Environment>
     });
 
     let executor = Threads::new(threads as usize)?;

@@ -21,6 +21,7 @@ mod schedule;
 mod sight;
 mod streams;
 mod units;
+mod watched;
 
 pub use check_env::{EnvFault, MADE_FROM, check_env};
 pub use design::{DesignError, DesignGroup, DesignSpace, Initial};
@@ -41,3 +42,4 @@ pub use schedule::share_done;
 pub use sight::{Cord, Form, Sight, Solid};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, split_quantity, unit};
+pub use watched::{Watch, Watched};

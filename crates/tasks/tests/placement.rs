@@ -9,46 +9,21 @@ use std::sync::{Arc, Mutex};
 
 use hwasp_core::{
     EnvSpec, Environment, EpisodeKind, Episodes, HardwarePolicy, Law, MakeEnvironment, Noise, Placement, PolicySpec,
-    Sampler, Serial, Step, Stream,
+    Sampler, Serial, Step, Watch, Watched,
 };
 use hwasp_diff::Activation;
 use hwasp_tasks::mass_spring::{Interface, MassSpring, MassSpringSettings};
 
 /// Writes down, as bits, every state, effort and command that an environment sees.
 struct Recorder {
-    inner: Box<dyn Environment>,
     seen: Arc<Mutex<Vec<u64>>>,
 }
 
-impl Environment for Recorder {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_design(&mut self, design: &[f64]) {
-        self.inner.set_design(design);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-    }
-
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn context(&self, out: &mut [f64]) {
-        self.inner.context(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
-        let step = self.inner.step(effort, command);
+impl Watch for Recorder {
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
+        let step = inner.step(effort, command);
         let mut state = [0.0; 4];
-        self.inner.state(&mut state);
+        inner.state(&mut state);
         let numbers = effort.iter().chain(command).chain(&state).chain([&step.reward]);
         self.seen.lock().unwrap().extend(numbers.map(|x| x.to_bits()));
         step
@@ -83,7 +58,7 @@ fn trajectories(problem: &MassSpring, policy: HardwarePolicy, seed: u64) -> Vec<
     let seen = Arc::new(Mutex::new(Vec::new()));
     let (problem, log) = (problem.clone(), Arc::clone(&seen));
     let make = move |horizon| -> Box<dyn Environment> {
-        Box::new(Recorder { inner: problem.make(horizon), seen: Arc::clone(&log) })
+        Box::new(Watched::new(problem.make(horizon), Recorder { seen: Arc::clone(&log) }))
     };
     let sampler = Sampler::new(Arc::new(policy), Arc::new(make), None);
     let starts = Episodes { seed, iteration: 0, indices: 0..3, progress: 0.0, kind: EpisodeKind::Evaluation };

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use hwasp_core::{EnvSpec, Environment, Executor, Outcome, Serial, Step, Stream, Threads};
+use hwasp_core::{Environment, Executor, Serial, Step, Threads, Watch, Watched};
 use hwasp_experiment::{Catalogue, Experiment, Faults, Layers, load};
 use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, ObserverError, Trained, train_from};
 
@@ -149,56 +149,19 @@ impl Observer for Stopper<'_> {
 pub fn spoil(assembly: &mut Assembly, how: impl Fn(&[f64], Step) -> Step + Send + Sync + 'static) {
     let (how, whole): (Arc<How>, _) = (Arc::new(how), assembly.worlds.training.make.clone());
     assembly.worlds.training.make = Arc::new(move |horizon| {
-        Box::new(Spoiled { inner: whole.make(horizon), how: how.clone() }) as Box<dyn Environment>
+        Box::new(Watched::new(whole.make(horizon), Spoiler { how: how.clone() })) as Box<dyn Environment>
     });
     assembly.worlds.deployment = assembly.worlds.training.clone();
 }
 
 type How = dyn Fn(&[f64], Step) -> Step + Send + Sync;
 
-struct Spoiled {
-    inner: Box<dyn Environment>,
+struct Spoiler {
     how: Arc<How>,
 }
 
-impl Environment for Spoiled {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_progress(&mut self, progress: f64) {
-        self.inner.set_progress(progress);
-    }
-
-    fn set_design(&mut self, design: &[f64]) {
-        self.inner.set_design(design);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-    }
-
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn context(&self, out: &mut [f64]) {
-        self.inner.context(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
-        (self.how)(effort, self.inner.step(effort, command))
-    }
-
-    fn outcome(&self) -> Option<Outcome> {
-        self.inner.outcome()
-    }
-
-    fn fault(&self) -> Option<String> {
-        self.inner.fault()
+impl Watch for Spoiler {
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
+        (self.how)(effort, inner.step(effort, command))
     }
 }

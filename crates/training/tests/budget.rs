@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{End, EnvSpec, Environment, Step, Stream};
+use hwasp_core::{End, Environment, Step, Stream, Watch, Watched};
 use hwasp_testing::{layers, resolve, run, small, told};
 use hwasp_training::{Assembly, Trained};
 
@@ -22,38 +22,21 @@ fn trained(method: &'static str, env_steps: &str) -> (Assembly, Trained) {
     (assembly, trained)
 }
 
-/// Ends its episodes after so many steps.
+/// Ends episodes after so many steps.
 struct Short {
-    inner: Box<dyn Environment>,
     most: usize,
     step: usize,
 }
 
-impl Environment for Short {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_progress(&mut self, progress: f64) {
-        self.inner.set_progress(progress);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
+impl Watch for Short {
+    fn reset(&mut self, inner: &mut dyn Environment, rng: &mut Stream) {
         self.step = 0;
-        self.inner.reset(rng);
+        inner.reset(rng);
     }
 
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
         self.step += 1;
-        let step = self.inner.step(effort, command);
+        let step = inner.step(effort, command);
         if self.step == self.most { Step { end: Some(End::Terminated), ..step } } else { step }
     }
 }
@@ -61,8 +44,9 @@ impl Environment for Short {
 /// The same problem, whose episodes end after so many of their 30 steps.
 fn shortened(mut assembly: Assembly, most: usize) -> Assembly {
     let whole = Arc::clone(&assembly.worlds.training.make);
-    assembly.worlds.training.make =
-        Arc::new(move |horizon| Box::new(Short { inner: whole.make(horizon), most, step: 0 }) as Box<dyn Environment>);
+    assembly.worlds.training.make = Arc::new(move |horizon| {
+        Box::new(Watched::new(whole.make(horizon), Short { most, step: 0 })) as Box<dyn Environment>
+    });
     assembly
 }
 

@@ -4,45 +4,24 @@
 
 use std::sync::{Arc, Mutex};
 
-use hwasp_core::{EnvSpec, Environment, Step, Stream};
+use hwasp_core::{Environment, Step, Watch, Watched};
 use hwasp_experiment::{Files, Folder, Layers};
 use hwasp_testing::{executor, run, small};
 use hwasp_training::{Assembly, evaluate};
 
 /// Writes down how much of training is done at each start.
 struct Recording {
-    inner: Box<dyn Environment>,
     told: Arc<Mutex<Vec<f64>>>,
 }
 
-impl Environment for Recording {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_progress(&mut self, progress: f64) {
+impl Watch for Recording {
+    fn set_progress(&mut self, inner: &mut dyn Environment, progress: f64) {
         self.told.lock().unwrap().push(progress);
-        self.inner.set_progress(progress);
+        inner.set_progress(progress);
     }
 
-    fn set_design(&mut self, design: &[f64]) {
-        self.inner.set_design(design);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-    }
-
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
-        self.inner.step(effort, command)
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
+        inner.step(effort, command)
     }
 }
 
@@ -52,7 +31,7 @@ fn recorded(method: &str, settings: hwasp_testing::Settings) -> (Assembly, Arc<M
     let (told, whole) = (Arc::new(Mutex::new(Vec::new())), assembly.worlds.training.make.clone());
     let recording = Arc::clone(&told);
     assembly.worlds.training.make = Arc::new(move |horizon| {
-        Box::new(Recording { inner: whole.make(horizon), told: Arc::clone(&recording) }) as Box<dyn Environment>
+        Box::new(Watched::new(whole.make(horizon), Recording { told: Arc::clone(&recording) })) as Box<dyn Environment>
     });
     (assembly, told)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use hwasp_core::{End, EnvSpec, Environment, EpisodeResult, MakeEnvironment, Outcome, Serial, Sight, Step, Stream};
+use hwasp_core::{End, Environment, EpisodeResult, MakeEnvironment, Serial, Sight, Step, Stream, Watch, Watched};
 use hwasp_training::{Assembly, EvaluateError, World, held_out, sampler};
 
 /// The most moments that are kept of an episode.
@@ -132,75 +132,34 @@ struct Filmed {
 
 impl MakeEnvironment for Filmed {
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment> {
-        Box::new(Camera { inner: self.make.make(horizon), kept: Arc::clone(&self.kept) })
+        Box::new(Watched::new(self.make.make(horizon), Camera { kept: Arc::clone(&self.kept) }))
     }
 }
 
-/// An environment, and somebody who looks at it.
+/// Somebody who looks at an environment.
 struct Camera {
-    inner: Box<dyn Environment>,
     kept: Arc<Mutex<Kept>>,
 }
 
-impl Environment for Camera {
-    fn spec(&self) -> &EnvSpec {
-        self.inner.spec()
-    }
-
-    fn set_progress(&mut self, progress: f64) {
-        self.inner.set_progress(progress);
-    }
-
-    fn set_design(&mut self, design: &[f64]) {
-        self.inner.set_design(design);
-    }
-
-    fn reset(&mut self, rng: &mut Stream) {
-        self.inner.reset(rng);
-        let stride = (PACE / self.inner.spec().time_step).floor().max(1.0) as usize;
+impl Watch for Camera {
+    fn reset(&mut self, inner: &mut dyn Environment, rng: &mut Stream) {
+        inner.reset(rng);
+        let stride = (PACE / inner.spec().time_step).floor().max(1.0) as usize;
         let mut kept = lock(&self.kept);
         *kept = Kept { stride, ..Kept::default() };
-        kept.keep(self.inner.look());
+        kept.keep(inner.look());
     }
 
-    fn observe(&self, out: &mut [f64]) {
-        self.inner.observe(out);
-    }
-
-    fn state(&self, out: &mut [f64]) {
-        self.inner.state(out);
-    }
-
-    fn context(&self, out: &mut [f64]) {
-        self.inner.context(out);
-    }
-
-    fn step(&mut self, effort: &[f64], command: &[f64]) -> Step {
-        let step = self.inner.step(effort, command);
+    fn step(&mut self, inner: &mut dyn Environment, effort: &[f64], command: &[f64]) -> Step {
+        let step = inner.step(effort, command);
         let mut kept = lock(&self.kept);
         kept.taken += 1;
         kept.worth += step.reward;
         // Where the physics failed there is nothing to see.
         let due = step.end.is_some() || kept.taken.is_multiple_of(kept.stride);
         if due && step.end != Some(End::Faulted) {
-            kept.keep(self.inner.look());
+            kept.keep(inner.look());
         }
         step
-    }
-
-    fn terms(&self) -> &[f64] {
-        self.inner.terms()
-    }
-
-    fn outcome(&self) -> Option<Outcome> {
-        self.inner.outcome()
-    }
-
-    fn look(&mut self) -> Option<Sight> {
-        self.inner.look()
-    }
-
-    fn fault(&self) -> Option<String> {
-        self.inner.fault()
     }
 }

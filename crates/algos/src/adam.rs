@@ -1,5 +1,6 @@
 //! Adam (Kingma and Ba 2015, algorithm 1).
 
+use hwasp_core::{ParamGroup, ParamKind};
 use hwasp_diff::fast::vectorised;
 use serde::{Deserialize, Serialize};
 
@@ -74,6 +75,22 @@ impl Persist for Adam {
         with.vector("second", &mut self.second)?;
         with.number("steps", &mut self.steps)
     }
+}
+
+/// Learning rates of `count` parameters: `rate`, times `design_scale` where they are the design's and times `log_std_scale` where
+/// they are log standard deviations; nothing where no gradient may move them.
+pub fn group_rates(groups: &[ParamGroup], count: usize, rate: f64, design_scale: f64, log_std_scale: f64) -> Vec<f32> {
+    let mut rates = vec![rate as f32; count];
+    for group in groups {
+        let scale = match group.kind {
+            ParamKind::Controller => 1.0,
+            ParamKind::Normalizer => 0.0,
+            ParamKind::Design => design_scale,
+            ParamKind::LogStd => log_std_scale,
+        };
+        rates[group.range.clone()].fill((rate * scale) as f32);
+    }
+    rates
 }
 
 /// Scales `gradient` down to `max_norm` if it is longer; returns its norm before.

@@ -68,7 +68,10 @@ pub trait LearnerKind: Send + Sync {
 }
 
 /// The settings of a learner, of the type that it gave.
-fn own<S: 'static>(settings: &dyn AnySettings) -> &S {
+///
+/// # Panics
+/// If they are of another type.
+pub fn own<S: 'static>(settings: &dyn AnySettings) -> &S {
     settings.as_any().downcast_ref().expect("settings are handed back to the learner that they came from")
 }
 

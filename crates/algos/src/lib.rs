@@ -22,12 +22,12 @@ mod surrogate;
 mod tests;
 mod trpo;
 
-pub use adam::{Adam, AdamConfig};
+pub use adam::{Adam, AdamConfig, group_rates};
 pub use archive::{Archive, Array, Element, Exchange, Persist, StateError};
 pub use baseline::{Baseline, BaselineConfig, InputDims, LinearBaseline, MlpBaseline, MlpBaselineConfig};
 pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner};
-pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKind};
+pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKind, own};
 pub use metrics::Metrics;
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
 pub use search::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter, Stop};

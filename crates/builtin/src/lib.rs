@@ -4,6 +4,7 @@
 
 use hwasp_algos::{PpoKind, TrpoKind};
 use hwasp_experiment::{Catalogue, CatalogueError};
+use hwasp_offpolicy::Td3Kind;
 use hwasp_tasks::grasp::{Engine, GraspProblem};
 use hwasp_tasks::mass_spring::{BarLength, Stiffness};
 use hwasp_tasks::pendulum::PendulumProblem;
@@ -38,6 +39,7 @@ fn all() -> Result<Catalogue, CatalogueError> {
     let catalogue = Catalogue::default()
         .with_learner(PpoKind)?
         .with_learner(TrpoKind)?
+        .with_learner(Td3Kind)?
         .with(Stiffness)?
         .with(BarLength)?
         .with(ReachProblem)?

@@ -37,6 +37,10 @@ pub enum Purpose {
     InnerSeed = 11,
     /// Observations at which exported controllers are compared.
     Samples = 12,
+    /// Rows that an off-policy learner draws from its replay, and the noise of its actions there.
+    Replay = 13,
+    /// Initial weights of critics.
+    Critic = 14,
 }
 
 /// The stream of this name.

@@ -24,13 +24,32 @@ pub(crate) struct Gradient<'a> {
     learner: Box<dyn Learner>,
     pub(crate) learned: Learned,
     running: Running,
+    /// The parameters that act in the next iteration, where they are not the present ones: those from before the last update, of
+    /// a learner that [learns from others](Learner::learns_from_others).
+    acting: Option<Vec<f32>>,
+    /// What came of the next iteration's episodes, where they were run while the learner learned. It follows from the rest: who
+    /// resumes runs them anew.
+    ahead: Option<Result<Batch, TrainError>>,
+}
+
+/// Where a training stands before an iteration: all that its episodes follow from.
+struct Stand {
+    /// The parameters that act.
+    params: Vec<f32>,
+    /// Real simulator steps before it.
+    env_steps: u64,
+    iteration: u64,
 }
 
 impl Persist for Gradient<'_> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
         with.part("loop", &mut self.learned)?;
         with.part("learner", &mut *self.learner)?;
-        with.part("running", &mut self.running)
+        with.part("running", &mut self.running)?;
+        match &mut self.acting {
+            Some(acting) => with.vector("acting", acting),
+            None => Ok(()),
+        }
     }
 }
 
@@ -78,12 +97,9 @@ impl<'a> Gradient<'a> {
 
     /// From the beginning, with these parameters.
     pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
-        Self {
-            assembly,
-            learner: assembly.learner(params),
-            learned: Learned::default(),
-            running: Running::new(assembly),
-        }
+        let learner = assembly.learner(params);
+        let acting = learner.learns_from_others().then(|| learner.params().to_vec());
+        Self { assembly, learner, learned: Learned::default(), running: Running::new(assembly), acting, ahead: None }
     }
 
     /// From the beginning, with the parameters of a policy that was trained for so many steps.
@@ -106,16 +122,44 @@ impl<'a> Gradient<'a> {
     }
 
     fn iterate(&mut self, run: &mut LoopContext<'_>) -> Result<(), TrainError> {
-        let progress = self.progress();
-        let mut batch = self.collect(run.collector, &run.experiment).or_else(|error| self.fail(None, error, run))?;
-        let update = self.learn(run.executor, &mut batch, progress);
+        let collected = match self.ahead.take() {
+            Some(collected) => collected,
+            None => collect(self.assembly, run.collector, &run.experiment, &self.stand()),
+        };
+        let mut batch = collected.or_else(|error| self.fail(None, error, run))?;
+        let env_steps = self.learned.env_steps + batch.env_steps();
+        let update = if self.acting.is_some() {
+            self.learn_beside(&mut batch, env_steps, run)
+        } else {
+            self.learn(run.executor, &mut batch)
+        };
         let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
-        self.learned.env_steps += batch.env_steps();
+        self.learned.env_steps = env_steps;
         self.learned.discarded_episodes += batch.faults.len() as u64;
         let policy = &self.assembly.policy;
         let totals = policy.space().totals(&policy.design(self.learner.params()));
         let returns = whole_returns(&batch, self.assembly.experiment().discount());
         Ok(self.learned.record(returns, update.values().to_vec(), totals, run)?)
+    }
+
+    /// Learns, and meanwhile runs the next iteration's episodes, with the parameters from before.
+    fn learn_beside(
+        &mut self,
+        batch: &mut Batch,
+        env_steps: u64,
+        run: &LoopContext<'_>,
+    ) -> Result<Metrics, TrainError> {
+        let stand = Stand { params: self.params(), env_steps, iteration: self.learned.iterations + 1 };
+        let (assembly, executor, collector, experiment) = (self.assembly, run.executor, run.collector, &run.experiment);
+        let (mut update, mut ahead) = (None, None);
+        executor.both(
+            &mut || ahead = Some(assembly.iterates(env_steps).then(|| collect(assembly, collector, experiment, &stand))),
+            &mut || update = Some(self.learn(executor, batch)),
+        );
+        let (update, ahead) = update.zip(ahead).expect("an executor runs every job");
+        let update = update?;
+        (self.acting, self.ahead) = (Some(stand.params), ahead);
+        Ok(update)
     }
 
     /// Tells the observer of an iteration that failed, with all that it takes to repeat it: the learner is as it was.
@@ -130,59 +174,23 @@ impl<'a> Gradient<'a> {
         Err(error)
     }
 
-    /// The share of all schedules that is done.
-    fn progress(&self) -> f64 {
-        self.assembly.experiment().train.progress(self.learned.env_steps)
-    }
-
     /// What the iteration at hand takes; none where the budget is spent.
     fn portion(&self) -> Option<Portion> {
         self.assembly.portion(self.learned.env_steps)
     }
 
-    /// The episodes of the iteration at hand. The last one goes on with further episodes, by index, as long as the budget holds a
-    /// whole one: how many depends on the steps of those before alone, and so on nothing that a resume could change.
-    fn collect(&self, collector: &dyn Collector, experiment: &ExperimentText) -> Result<Batch, TrainError> {
-        let first = match self.portion() {
-            None => 0,
-            Some(Portion::Episodes(episodes)) => episodes,
-            Some(Portion::Steps(steps)) => {
-                return Ok(collector.rows(&self.request(experiment, 0..steps.lanes, Some(steps)))?.sound()?);
-            }
-        };
-        let mut parts = Vec::new();
-        let (mut taken, mut asked, mut more) = (self.learned.env_steps, 0, first);
-        while more > 0 {
-            let part = collector.rows(&self.request(experiment, asked..asked + more, None))?;
-            asked += more;
-            taken += part.env_steps();
-            more = self.assembly.further_episodes(taken);
-            parts.push(part);
-        }
-        Ok(Batch::join(parts).sound()?)
-    }
-
-    /// Asks for episodes of the iteration at hand, or for the steps of its lanes.
-    fn request(&self, experiment: &ExperimentText, indices: Range<u64>, lanes: Option<LaneSteps>) -> EpisodesRequest {
-        let Experiment { seed, train, .. } = self.assembly.experiment();
-        EpisodesRequest {
-            experiment: experiment.clone(),
-            stage: Stage::Training,
-            params: self.params(),
-            episodes: Episodes {
-                seed: *seed,
-                iteration: self.learned.iterations,
-                indices,
-                progress: self.progress(),
-                kind: EpisodeKind::Training,
-            },
-            steps: Some(train.episode_steps),
-            lanes,
+    /// Where it stands.
+    fn stand(&self) -> Stand {
+        Stand {
+            params: self.acting.clone().unwrap_or_else(|| self.params()),
+            env_steps: self.learned.env_steps,
+            iteration: self.learned.iterations,
         }
     }
 
     /// The update of the iteration at hand.
-    fn learn(&mut self, executor: &dyn Executor, batch: &mut Batch, progress: f64) -> Result<Metrics, TrainError> {
+    fn learn(&mut self, executor: &dyn Executor, batch: &mut Batch) -> Result<Metrics, TrainError> {
+        let progress = self.assembly.experiment().train.progress(self.learned.env_steps);
         let asked = batch.episodes.len() + batch.faults.len();
         let faulty = 2 * batch.faults.len() > asked;
         let in_a_row = if faulty { self.learned.faulty_iterations + 1 } else { 0 };
@@ -208,6 +216,59 @@ impl<'a> Gradient<'a> {
         let update = update?;
         (self.running, self.learned.faulty_iterations) = (running, in_a_row);
         Ok(update)
+    }
+}
+
+/// The episodes of an iteration. The last one goes on with further episodes, by index, as long as the budget holds a whole one: how
+/// many depends on the steps of those before alone, and so on nothing that a resume could change.
+fn collect(
+    assembly: &Assembly,
+    collector: &dyn Collector,
+    experiment: &ExperimentText,
+    stand: &Stand,
+) -> Result<Batch, TrainError> {
+    let request = |indices, lanes| request(assembly, experiment, stand, indices, lanes);
+    let first = match assembly.portion(stand.env_steps) {
+        None => 0,
+        Some(Portion::Episodes(episodes)) => episodes,
+        Some(Portion::Steps(steps)) => {
+            return Ok(collector.rows(&request(0..steps.lanes, Some(steps)))?.sound()?);
+        }
+    };
+    let mut parts = Vec::new();
+    let (mut taken, mut asked, mut more) = (stand.env_steps, 0, first);
+    while more > 0 {
+        let part = collector.rows(&request(asked..asked + more, None))?;
+        asked += more;
+        taken += part.env_steps();
+        more = assembly.further_episodes(taken);
+        parts.push(part);
+    }
+    Ok(Batch::join(parts).sound()?)
+}
+
+/// Asks for episodes of an iteration, or for the steps of its lanes.
+fn request(
+    assembly: &Assembly,
+    experiment: &ExperimentText,
+    stand: &Stand,
+    indices: Range<u64>,
+    lanes: Option<LaneSteps>,
+) -> EpisodesRequest {
+    let Experiment { seed, train, .. } = assembly.experiment();
+    EpisodesRequest {
+        experiment: experiment.clone(),
+        stage: Stage::Training,
+        params: stand.params.clone(),
+        episodes: Episodes {
+            seed: *seed,
+            iteration: stand.iteration,
+            indices,
+            progress: train.progress(stand.env_steps),
+            kind: EpisodeKind::Training,
+        },
+        steps: Some(train.episode_steps),
+        lanes,
     }
 }
 
@@ -238,10 +299,9 @@ pub(crate) fn repeat_by(
     executor: &dyn Executor,
 ) -> Result<(Option<Batch>, Result<Metrics, TrainError>), StateError> {
     let mut state = Gradient::new(assembly, Some(from))?;
-    let progress = state.progress();
-    Ok(match state.collect(collector, experiment) {
+    Ok(match collect(assembly, collector, experiment, &state.stand()) {
         Ok(mut batch) => {
-            let outcome = state.learn(executor, &mut batch, progress);
+            let outcome = state.learn(executor, &mut batch);
             (Some(batch), outcome)
         }
         Err(error) => (None, Err(error)),

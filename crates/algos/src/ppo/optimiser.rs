@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, ParamKind, Policy, Purpose, Stream, gaussian, stream};
+use hwasp_core::{Batch, Policy, Purpose, Stream, gaussian, stream};
 use rand::seq::SliceRandom;
 
 use super::{PpoConfig, metric_names};
-use crate::adam::{Adam, AdamConfig, clip_norm};
+use crate::adam::{Adam, AdamConfig, clip_norm, group_rates};
 use crate::draws::Draws;
 use crate::learner::LearnError;
 use crate::metrics::Metrics;
@@ -96,17 +96,7 @@ impl<P: Policy> Optimiser<P> {
     fn learning_rates(&self, progress: f64) -> Vec<f32> {
         let config = &self.config;
         let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
-        let mut rates = vec![rate as f32; self.params.len()];
-        for group in self.policy.groups() {
-            let scale = match group.kind {
-                ParamKind::Controller => 1.0,
-                ParamKind::Normalizer => 0.0,
-                ParamKind::Design => config.design_lr_scale,
-                ParamKind::LogStd => config.log_std_lr_scale,
-            };
-            rates[group.range.clone()].fill((rate * scale) as f32);
-        }
-        rates
+        group_rates(self.policy.groups(), self.params.len(), rate, config.design_lr_scale, config.log_std_lr_scale)
     }
 
     fn dims(&self) -> (usize, usize, usize) {

@@ -36,6 +36,10 @@ impl Policy for Line {
     fn groups(&self) -> &[ParamGroup] {
         &self.0
     }
+    fn action_limits(&self) -> Vec<Option<(f32, f32)>> {
+        vec![None; self.action_dim()]
+    }
+
     fn action_dim(&self) -> usize {
         1
     }

@@ -282,6 +282,14 @@ impl Policy for HardwarePolicy {
         self.context_dim
     }
 
+    fn action_limits(&self) -> Vec<Option<(f32, f32)>> {
+        let layout = &self.composition.layout;
+        let limits = |(lo, hi): (f64, f64)| Some((lo as f32, hi as f32));
+        let sampled = layout.sampled.iter().map(|&i| limits(self.space().bounds(i)));
+        let commands = layout.commands.iter().map(|&c| limits((self.commands[c].lo, self.commands[c].hi)));
+        sampled.chain(std::iter::repeat_n(None, layout.efforts)).chain(commands).collect()
+    }
+
     fn drawn_actions(&self) -> usize {
         self.composition.layout.drawn
     }

@@ -87,6 +87,9 @@ pub trait Policy: Send + Sync {
     fn state_dim(&self) -> usize;
     /// The number of quantities that tell a baseline, and nobody else, what an episode is about.
     fn context_dim(&self) -> usize;
+    /// Limits of each component of the action, SI: beyond them it does to the world what it does there. None of a component that
+    /// has none, such as an effort.
+    fn action_limits(&self) -> Vec<Option<(f32, f32)>>;
     /// How many of the action's components, the first ones, are drawn once an episode and held. Their means depend on no row,
     /// and their probability counts once an episode ([`Episode::log_prob`](crate::Episode::log_prob)), not in every row.
     fn drawn_actions(&self) -> usize {

@@ -83,6 +83,8 @@ pub struct MlpTape<F> {
     layers: Vec<LayerTape<F>>,
     /// Cotangents of a layer's outputs and of its inputs, in turn.
     cotangents: [Aligned<F>; 2],
+    /// Cotangents of the inputs `[rows × padded inputs]`; empty where they are not asked for.
+    input_cotangent: Aligned<F>,
     max_rows: usize,
     rows: usize,
 }
@@ -155,6 +157,15 @@ impl Mlp {
 
     /// Working memory for blocks of up to `max_rows` rows.
     pub fn tape<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
+        self.tape_for(max_rows, false)
+    }
+
+    /// The same for whoever wants the [cotangents of the inputs](MlpTape::input_cotangent) as well.
+    pub fn tape_with_inputs<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
+        self.tape_for(max_rows, true)
+    }
+
+    fn tape_for<F: Float>(&self, max_rows: usize, inputs: bool) -> MlpTape<F> {
         let mut widest = 0;
         let layers = self
             .layers()
@@ -165,7 +176,7 @@ impl Mlp {
                 widest = widest.max(stride).max(padded::<F>(l.inputs));
                 let weights = Aligned::zeroed(long * short);
                 let bias = Aligned::zeroed(stride);
-                let transposed = if l.narrow || l.at == 0 { 0 } else { l.outputs * padded::<F>(l.inputs) };
+                let transposed = if l.narrow || (l.at == 0 && !inputs) { 0 } else { l.outputs * padded::<F>(l.inputs) };
                 let output = Aligned::zeroed(max_rows * stride);
                 LayerTape {
                     transposed: Aligned::zeroed(transposed),
@@ -183,7 +194,8 @@ impl Mlp {
             })
             .collect();
         let cotangent = Aligned::zeroed(max_rows * widest);
-        MlpTape { layers, cotangents: [cotangent.clone(), cotangent], max_rows, rows: 0 }
+        let input_cotangent = Aligned::zeroed(if inputs { max_rows * padded::<F>(self.sizes[0]) } else { 0 });
+        MlpTape { layers, cotangents: [cotangent.clone(), cotangent], input_cotangent, max_rows, rows: 0 }
     }
 
     /// Takes over a parameter vector and clears the sums of cotangents.
@@ -229,7 +241,13 @@ impl Mlp {
     /// Adds the gradient of Σ cotangent·output to the tape's sums, after [`forward`](Self::forward) of the same input.
     /// `cotangent` is `[rows × outputs]`, row by row.
     pub fn vjp<F: Float>(&self, input: &[F], cotangent: &[F], tape: &mut MlpTape<F>) {
-        pulp::Arch::new().dispatch(Backward { inputs: self.sizes[0], input, cotangent, tape });
+        pulp::Arch::new().dispatch(Backward { inputs: self.sizes[0], input, cotangent, weights: true, tape });
+    }
+
+    /// The cotangents of the inputs alone, after [`forward`](Self::forward) of the same input, on a tape
+    /// [that has them](Self::tape_with_inputs): the sums for the parameters stay as they are.
+    pub fn vjp_inputs<F: Float>(&self, input: &[F], cotangent: &[F], tape: &mut MlpTape<F>) {
+        pulp::Arch::new().dispatch(Backward { inputs: self.sizes[0], input, cotangent, weights: false, tape });
     }
 
     /// Adds the sums of cotangents to `gradient`, shaped as the parameters.
@@ -293,6 +311,13 @@ impl<F: Float> MlpTape<F> {
     /// The outputs of the last forward and the stride between rows: output `j` of row `r` is at `r·stride + j`.
     pub fn output(&self) -> (&[F], usize) {
         self.layers.last().map_or((&[], 0), |l| (&l.output[..self.rows * l.stride], l.stride))
+    }
+
+    /// The cotangents of the inputs of the last vjp and the stride between rows, laid out as [`output`](Self::output). Only on a tape
+    /// that was [made for them](Mlp::tape_with_inputs).
+    pub fn input_cotangent(&self) -> (&[F], usize) {
+        let stride = self.input_cotangent.len() / self.max_rows.max(1);
+        (&self.input_cotangent[..self.rows * stride], stride)
     }
 
     /// The outputs' tangents of the last jvp, laid out as [`output`](Self::output).

@@ -46,6 +46,8 @@ pub(super) struct Backward<'a, F> {
     pub(super) inputs: usize,
     pub(super) input: &'a [F],
     pub(super) cotangent: &'a [F],
+    /// Whether the sums for weights and biases are wanted.
+    pub(super) weights: bool,
     pub(super) tape: &'a mut MlpTape<F>,
 }
 
@@ -54,7 +56,7 @@ impl<F: Float> WithSimd for Backward<'_, F> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let MlpTape { layers, cotangents: [current, next], rows, .. } = self.tape;
+        let MlpTape { layers, cotangents: [current, next], input_cotangent, rows, .. } = self.tape;
         let (mut current, mut next, rows) = (&mut current[..], &mut next[..], *rows);
         if let Some(last) = layers.last() {
             let outputs = last.layer.outputs;
@@ -79,18 +81,25 @@ impl<F: Float> WithSimd for Backward<'_, F> {
             differentiate(shape.activation, &t.output[..rows * t.stride], d);
             let sums = &mut t.weights_cotangent;
             if shape.narrow {
-                for j in 0..shape.outputs {
-                    t.bias_cotangent[j] += sum_column(d, shape.outputs, j);
+                if self.weights {
+                    for j in 0..shape.outputs {
+                        t.bias_cotangent[j] += sum_column(d, shape.outputs, j);
+                    }
+                    product_transposed::<F, S>(simd, (rows, shape.outputs, x_stride), d, t.stride, x, sums);
                 }
-                product_transposed::<F, S>(simd, (rows, shape.outputs, x_stride), d, t.stride, x, sums);
                 let size = (rows, shape.outputs, x_stride);
                 product::<F, S>(simd, size, d, t.stride, &t.weights, Onto::Zero, &mut next[..rows * x_stride]);
             } else {
-                add_rows(d, &mut t.bias_cotangent);
-                product_transposed::<F, S>(simd, (rows, shape.inputs, t.stride), x, x_stride, d, sums);
-                if l > 0 {
-                    let size = (rows, shape.outputs, x_stride);
-                    product::<F, S>(simd, size, d, t.stride, &t.transposed, Onto::Zero, &mut next[..rows * x_stride]);
+                if self.weights {
+                    add_rows(d, &mut t.bias_cotangent);
+                    product_transposed::<F, S>(simd, (rows, shape.inputs, t.stride), x, x_stride, d, sums);
+                }
+                // Of the first layer it is empty, unless cotangents of the inputs are wanted.
+                if !t.transposed.is_empty() {
+                    let padded = t.transposed.len() / shape.outputs;
+                    let below = if l > 0 { &mut next[..rows * padded] } else { &mut input_cotangent[..rows * padded] };
+                    let size = (rows, shape.outputs, padded);
+                    product::<F, S>(simd, size, d, t.stride, &t.transposed, Onto::Zero, below);
                 }
             }
             std::mem::swap(&mut current, &mut next);

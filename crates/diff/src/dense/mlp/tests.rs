@@ -12,16 +12,16 @@ fn run<S: Simd>(simd: S, mlp: &Mlp) -> Vec<u32> {
     let input: Vec<f32> = (0..ROWS * inputs).map(entry).collect();
     let cotangent: Vec<f32> = (0..ROWS * mlp.outputs()).map(|i| entry(7 * i)).collect();
     let params: Vec<f32> = (0..mlp.param_count()).map(|i| 0.3 * entry(3 * i)).collect();
-    let tape = &mut mlp.tape::<f32>(ROWS);
+    let tape = &mut mlp.tape_with_inputs::<f32>(ROWS);
     mlp.bind(&params, tape);
     mlp.bind_tangent(&input.iter().cycle().copied().take(params.len()).collect::<Vec<_>>(), tape);
     tape.rows = ROWS;
     simd.vectorize(Forward { inputs, input: &input, tape });
     simd.vectorize(Tangent { inputs, input: &input, tape });
-    simd.vectorize(Backward { inputs, input: &input, cotangent: &cotangent, tape });
+    simd.vectorize(Backward { inputs, input: &input, cotangent: &cotangent, weights: true, tape });
     let mut gradient = vec![0.0; params.len()];
     mlp.gradient(tape, &mut gradient);
-    tape.output().0.iter().chain(tape.tangent().0).chain(&gradient).map(|x| x.to_bits()).collect()
+    tape.output().0.iter().chain(tape.tangent().0).chain(&gradient).chain(tape.input_cotangent().0).map(|x| x.to_bits()).collect()
 }
 
 #[test]
@@ -39,6 +39,46 @@ fn the_width_of_vectors_changes_no_bit() {
             ];
             for bits in found.into_iter().flatten() {
                 assert!(bits == plain, "{sizes:?}");
+            }
+        }
+    }
+}
+
+/// Against central differences, with a narrow last layer and a wide one; the parameters' sums stay as they are.
+#[test]
+fn cotangents_of_inputs_are_derivatives() {
+    const ROWS: usize = 3;
+    for sizes in [&[3, 17, 2][..], &[5, 20, 9, 7], &[4, 6]] {
+        let mlp = Mlp::new(sizes, Activation::Tanh, Activation::Identity);
+        let entry = |i: usize| (12.9898 * (i + 1) as f64).sin();
+        let params: Vec<f64> = (0..mlp.param_count()).map(|i| 0.3 * entry(3 * i)).collect();
+        let input: Vec<f64> = (0..ROWS * mlp.inputs()).map(entry).collect();
+        let cotangent: Vec<f64> = (0..ROWS * mlp.outputs()).map(|i| entry(7 * i)).collect();
+        let tape = &mut mlp.tape_with_inputs::<f64>(ROWS);
+        mlp.bind(&params, tape);
+        let mut value = |input: &[f64]| {
+            mlp.forward(input, ROWS, tape);
+            let (output, stride) = tape.output();
+            let rows = output.chunks_exact(stride).zip(cotangent.chunks_exact(mlp.outputs()));
+            rows.flat_map(|(y, c)| y.iter().zip(c)).map(|(y, c)| y * c).sum::<f64>()
+        };
+        let step = 1e-6;
+        let expected: Vec<f64> = (0..input.len())
+            .map(|i| {
+                let at = |by: f64| input.iter().enumerate().map(|(k, x)| if k == i { x + by } else { *x }).collect::<Vec<_>>();
+                (value(&at(step)) - value(&at(-step))) / (2.0 * step)
+            })
+            .collect();
+        mlp.forward(&input, ROWS, tape);
+        mlp.vjp_inputs(&input, &cotangent, tape);
+        let mut gradient = vec![0.0; params.len()];
+        mlp.gradient(tape, &mut gradient);
+        assert!(gradient.iter().all(|&g| g == 0.0));
+        let (given, stride) = tape.input_cotangent();
+        for (r, expected) in expected.chunks_exact(mlp.inputs()).enumerate() {
+            for (j, expected) in expected.iter().enumerate() {
+                let given = given[r * stride + j];
+                assert!((given - expected).abs() < 1e-8, "{sizes:?}, row {r}, input {j}: {given} and {expected}");
             }
         }
     }

@@ -1,0 +1,137 @@
+//! Settings of off-policy learners.
+
+use hwasp_algos::{MOST_LAYERS, MOST_ROWS, WIDEST_LAYER};
+use hwasp_settings::{Fields, Settings};
+
+/// Settings that all off-policy learners share.
+///
+/// | name | default | purpose |
+/// |---|---|---|
+/// | `discount` | 0.99 | γ |
+/// | `n_step` | 1 | steps whose rewards are taken before a value takes over |
+/// | `batch_rows` | 256 | rows of a gradient step |
+/// | `replay_frames` | 1,000,000 | moments that are held |
+/// | `warmup_steps` | 1000 | steps before the first update |
+/// | `updates_per_step` | 1 | gradient steps per step of the simulator |
+/// | `policy_delay` | 2 | gradient steps of the critics for one of the policy |
+/// | `learning_rate` | 3e-4 | of the policy, by Adam |
+/// | `critic_learning_rate` | 3e-4 | of the critics |
+/// | `learning_rate_final` | 1 | fraction of both left at the end of a linear decay |
+/// | `polyak` | 0.005 | share that targets follow by |
+/// | `critic_hidden` | `[256, 256]` | widths of the critics' hidden layers, of ReLU |
+/// | `privileged` | false | critics see the law's state |
+/// | `context` | false | critics see what the episode is about |
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplayConfig {
+    /// γ.
+    pub discount: f64,
+    /// Steps whose rewards are taken as they were before a value takes over (Sutton 1988). What the policy did in between may not
+    /// be what it would do now: more than a few are a bias.
+    pub n_step: usize,
+    /// Rows of a gradient step.
+    pub batch_rows: usize,
+    /// Moments that the replay holds; the oldest give way.
+    pub replay_frames: usize,
+    /// Steps before the first update.
+    pub warmup_steps: usize,
+    /// Gradient steps of the critics per step of the simulator.
+    pub updates_per_step: f64,
+    /// Gradient steps of the critics for one of the policy (Fujimoto et al. 2018, section 5.2).
+    pub policy_delay: usize,
+    /// Step size of Adam for the policy, at the start.
+    pub learning_rate: f64,
+    /// The same for the critics.
+    pub critic_learning_rate: f64,
+    /// What fraction of both is left at the end.
+    pub learning_rate_final: f64,
+    /// τ, by which targets follow.
+    pub polyak: f64,
+    /// Widths of the critics' hidden layers.
+    pub critic_hidden: Vec<usize>,
+    /// Whether critics see the law's state, which the controller does not (Pinto et al. 2018).
+    pub privileged: bool,
+    /// Whether they see the episode's context.
+    pub context: bool,
+}
+
+impl Default for ReplayConfig {
+    fn default() -> Self {
+        Self {
+            discount: 0.99,
+            n_step: 1,
+            batch_rows: 256,
+            replay_frames: 1_000_000,
+            warmup_steps: 1000,
+            updates_per_step: 1.0,
+            policy_delay: 2,
+            learning_rate: 3e-4,
+            critic_learning_rate: 3e-4,
+            learning_rate_final: 1.0,
+            polyak: 0.005,
+            critic_hidden: vec![256, 256],
+            privileged: false,
+            context: false,
+        }
+    }
+}
+
+/// Limits of Adam's learning rate.
+const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
+
+impl Settings for ReplayConfig {
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        fields.number("discount", &mut self.discount, 0.0..=1.0, "gamma");
+        let about = "steps whose rewards are taken as they were before a value takes over";
+        fields.count("n_step", &mut self.n_step, 1..=100, about);
+        fields.count("batch_rows", &mut self.batch_rows, 1..=65_536, "rows of a gradient step");
+        let about = "moments that the replay holds, one per step and one per episode; the oldest give way";
+        fields.count("replay_frames", &mut self.replay_frames, 100..=MOST_ROWS, about);
+        fields.count("warmup_steps", &mut self.warmup_steps, 1..=MOST_ROWS, "steps before the first update");
+        let about = "gradient steps of the critics per step of the simulator";
+        fields.number("updates_per_step", &mut self.updates_per_step, 1e-3..=100.0, about);
+        let about = "gradient steps of the critics for one of the policy";
+        fields.count("policy_delay", &mut self.policy_delay, 1..=100, about);
+        fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's, for the policy");
+        fields.number("critic_learning_rate", &mut self.critic_learning_rate, RATES, "Adam's, for the critics");
+        let about = "fraction of both at the end of a linear decay";
+        fields.number("learning_rate_final", &mut self.learning_rate_final, 0.0..=1.0, about);
+        fields.number("polyak", &mut self.polyak, 1e-6..=1.0, "share that the targets follow by in a gradient step");
+        let about = "widths of the critics' hidden layers";
+        fields.counts("critic_hidden", &mut self.critic_hidden, MOST_LAYERS, 1..=WIDEST_LAYER, about);
+        let about = "whether critics see the law's state, which the controller does not";
+        fields.flag("privileged", &mut self.privileged, about);
+        let about = "whether critics see what an episode is about and no sensor tells";
+        fields.flag("context", &mut self.context, about);
+    }
+}
+
+/// Settings of [`Td3`](crate::Td3).
+///
+/// | name | default | purpose |
+/// |---|---|---|
+/// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or the spread of an effort |
+/// | `target_noise_clip` | 0.5 | its largest size, in the same unit |
+#[derive(Clone, Debug, PartialEq)]
+pub struct Td3Config {
+    /// What it has in common with others.
+    pub replay: ReplayConfig,
+    /// σ̃ of target policy smoothing (Fujimoto et al. 2018, eq. 14).
+    pub target_noise: f64,
+    /// c of the same.
+    pub target_noise_clip: f64,
+}
+
+impl Default for Td3Config {
+    fn default() -> Self {
+        Self { replay: ReplayConfig::default(), target_noise: 0.2, target_noise_clip: 0.5 }
+    }
+}
+
+impl Settings for Td3Config {
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        self.replay.fields(fields);
+        let about = "standard deviation of the noise of target actions, of half the range of a command or of the spread of an effort";
+        fields.number("target_noise", &mut self.target_noise, 0.0..=10.0, about);
+        fields.number("target_noise_clip", &mut self.target_noise_clip, 0.0..=10.0, "the largest size of that noise");
+    }
+}

@@ -1,0 +1,63 @@
+//! TD3 by its name.
+
+use hwasp_algos::{BaselineSettings, Learner, LearnerKind, LearnerSetup, SettingFault, own};
+use hwasp_settings::AnySettings;
+
+use crate::config::{ReplayConfig, Td3Config};
+use crate::learner::Td3;
+
+/// Twin delayed deep deterministic policy gradients, `td3`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Td3Kind;
+
+/// What of the settings does not go together with iterations of so many rows.
+fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Option<SettingFault> {
+    let frames = settings.replay_frames;
+    if frames < settings.warmup_steps {
+        return Some(SettingFault {
+            key: "replay_frames",
+            message: format!("{table}.replay_frames = {frames} is less than {table}.warmup_steps = {}", settings.warmup_steps),
+            hint: "learning would never begin: hold more, or begin earlier".into(),
+        });
+    }
+    // An episode ends with a moment of its own.
+    (frames < 2 * rows).then(|| SettingFault {
+        key: "replay_frames",
+        message: format!("{table}.replay_frames = {frames} is less than twice the {portion}"),
+        hint: "hold at least two iterations; old experience is what the learner lives on".into(),
+    })
+}
+
+impl LearnerKind for Td3Kind {
+    fn name(&self) -> &'static str {
+        "td3"
+    }
+
+    fn title(&self) -> &'static str {
+        "TD3"
+    }
+
+    fn defaults(&self, _: usize, _: &[Box<dyn AnySettings>]) -> Box<dyn AnySettings> {
+        Box::new(Td3Config::default())
+    }
+
+    fn fault(&self, settings: &dyn AnySettings, rows: usize, portion: &str) -> Option<SettingFault> {
+        fault(self.name(), &own::<Td3Config>(settings).replay, rows, portion)
+    }
+
+    /// It has critics instead of one.
+    fn baseline(&self, _: &dyn AnySettings, rows: usize) -> BaselineSettings {
+        let mut baseline = BaselineSettings::default();
+        baseline.mlp.minibatch_rows = rows.min(baseline.mlp.minibatch_rows);
+        baseline
+    }
+
+    fn discount(&self, settings: &dyn AnySettings) -> f64 {
+        own::<Td3Config>(settings).replay.discount
+    }
+
+    fn learner(&self, settings: &dyn AnySettings, setup: LearnerSetup) -> Box<dyn Learner> {
+        let config = own::<Td3Config>(settings).clone();
+        Box::new(Td3::new(config, setup.policy, setup.params, setup.seed, setup.design_lr_scale))
+    }
+}

@@ -1,0 +1,297 @@
+//! The learner: replay, critics, policy and their targets.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use hwasp_algos::{Adam, AdamConfig, Exchange, LearnError, Learner, Metrics, Persist, StateError, group_rates};
+use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, stream};
+
+use crate::config::Td3Config;
+use crate::critic::{Critics, follow};
+use crate::replay::{Dims, Replay};
+use crate::sample::{Sample, View};
+use crate::scaling::Scaling;
+use crate::worker::{Step, Worker};
+
+/// Rows of a gradient step that are a job of their own.
+const ROWS_PER_JOB: usize = 128;
+
+/// What an update tells.
+const METRICS: &[&str] = &["td_error", "value", "updates", "replay_steps"];
+
+/// Twin delayed deep deterministic policy gradients (Fujimoto et al. 2018), with the mechanism in the policy: the critics judge
+/// what the mechanism does to the world, and their gradient reaches the design through its law. What is in the replay stays true
+/// whatever the design becomes.
+///
+/// | metric | meaning |
+/// |---|---|
+/// | `td_error` | root mean square of the first critic's errors over the update, in units of the return |
+/// | `value` | mean value of the policy's actions in the states of the replay |
+/// | `updates` | gradient steps of the critics in this iteration |
+/// | `replay_steps` | steps in the replay |
+pub struct Td3<P: Policy> {
+    config: Td3Config,
+    policy: Arc<P>,
+    seed: u64,
+    /// Times the learning rate, of design parameters.
+    design_lr_scale: f64,
+    view: View,
+    limits: Vec<Option<(f32, f32)>>,
+    learned: Learned,
+    replay: Replay,
+    /// Working memory.
+    sample: Sample,
+    workers: Vec<Mutex<Worker<P>>>,
+    gradient: Vec<f32>,
+    critic_gradient: Vec<f32>,
+}
+
+/// All that gradient steps change.
+#[derive(Clone, Debug)]
+struct Learned {
+    params: Vec<f32>,
+    target: Vec<f32>,
+    adam: Adam,
+    critics: Critics,
+    scaling: Scaling,
+    /// Gradient steps that the steps of the simulator have earned and that were not taken.
+    owed: f64,
+    /// Gradient steps of the critics so far.
+    updates: u64,
+}
+
+impl Persist for Learned {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.vector("params", &mut self.params)?;
+        with.vector("target", &mut self.target)?;
+        with.part("adam", &mut self.adam)?;
+        with.part("critics", &mut self.critics)?;
+        with.part("scaling", &mut self.scaling)?;
+        with.number("owed", &mut self.owed)?;
+        with.number("updates", &mut self.updates)
+    }
+}
+
+/// Sums over the gradient steps of an update.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    squares: f64,
+    values: f64,
+    steps: u64,
+    policy_steps: u64,
+}
+
+/// Learning rates of one update.
+struct Rates {
+    policy: Vec<f32>,
+    critic: Vec<f32>,
+}
+
+impl<P: Policy> Td3<P> {
+    /// Starts from `params`. `seed` names the streams of critics and replay; design parameters learn `design_lr_scale` times as
+    /// fast as the controller.
+    pub fn new(config: Td3Config, policy: Arc<P>, params: Vec<f32>, seed: u64, design_lr_scale: f64) -> Self {
+        let dims = Dims::of(&*policy);
+        let settings = &config.replay;
+        let view = View::new(dims, settings.privileged, settings.context);
+        let critics = Critics::new(view.width(), &settings.critic_hidden, seed);
+        let rows = settings.batch_rows;
+        let part = |at: usize| at..(at + ROWS_PER_JOB).min(rows);
+        let worker = |at| Mutex::new(Worker::new(part(at), &*policy, &critics, view));
+        Self {
+            workers: (0..rows).step_by(ROWS_PER_JOB).map(worker).collect(),
+            sample: Sample::new(dims, rows),
+            gradient: vec![0.0; params.len()],
+            critic_gradient: vec![0.0; critics.network.param_count()],
+            replay: Replay::new(dims, settings.replay_frames),
+            limits: policy.action_limits(),
+            learned: Learned {
+                target: params.clone(),
+                adam: Adam::new(AdamConfig::default(), params.len()),
+                params,
+                critics,
+                scaling: Scaling::new(dims),
+                owed: 0.0,
+                updates: 0,
+            },
+            config,
+            policy,
+            seed,
+            design_lr_scale,
+            view,
+        }
+    }
+
+    fn rates(&self, progress: f64) -> Rates {
+        let settings = &self.config.replay;
+        let decay = 1.0 + (settings.learning_rate_final - 1.0) * progress;
+        let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
+        let critic = (settings.critic_learning_rate * decay) as f32;
+        Rates {
+            policy: group_rates(self.policy.groups(), count, policy, self.design_lr_scale, 0.0),
+            critic: vec![critic; self.critic_gradient.len()],
+        }
+    }
+
+    /// All gradient steps that are owed.
+    fn learn(&mut self, executor: &dyn Executor, rates: &Rates, iteration: u64) -> Result<Sums, LearnError> {
+        let not_finite = |what| LearnError::NotFinite { what, iteration };
+        let discount = self.config.replay.discount;
+        if !self.learned.scaling.taken {
+            self.learned.scaling = Scaling::of(&self.replay, &*self.policy, discount);
+        }
+        let scaling = &self.learned.scaling;
+        let (noise, clip) = (self.config.target_noise as f32, self.config.target_noise_clip as f32);
+        let smoothing: Vec<_> = scaling.action.iter().map(|a| (noise * a.scale, clip * a.scale)).collect();
+        let mut chance = stream(self.seed, Purpose::Replay, iteration, 0);
+        let mut sums = Sums::default();
+        while self.learned.owed >= 1.0 {
+            self.learned.owed -= 1.0;
+            self.step(executor, rates, &smoothing, &mut chance, &mut sums);
+            if !sums.squares.is_finite() {
+                return Err(not_finite("a critic's error"));
+            }
+        }
+        let learned = &self.learned;
+        if !learned.params.iter().all(|p| p.is_finite()) {
+            return Err(not_finite("a parameter"));
+        }
+        if !learned.critics.each.iter().flat_map(|critic| &critic.params).all(|p| p.is_finite()) {
+            return Err(not_finite("a parameter of a critic"));
+        }
+        Ok(sums)
+    }
+
+    /// A gradient step of the critics and, where it is its turn, of the policy; targets follow it (Fujimoto et al. 2018,
+    /// algorithm 1).
+    fn step(
+        &mut self,
+        executor: &dyn Executor,
+        rates: &Rates,
+        smoothing: &[(f32, f32)],
+        chance: &mut Stream,
+        sums: &mut Sums,
+    ) {
+        let settings = &self.config.replay;
+        let (rows, tau, delay) = (settings.batch_rows, settings.polyak, settings.policy_delay as u64);
+        let value = self.learned.scaling.value;
+        self.sample.draw(&self.replay, (settings.n_step, settings.discount), value, chance);
+        self.run(executor, smoothing, Worker::judge);
+        self.descend_critics(&rates.critic);
+        sums.squares += self.sum(|worker| worker.squares) / rows as f64;
+        sums.steps += 1;
+        self.learned.updates += 1;
+        if self.learned.updates.is_multiple_of(delay) {
+            self.run(executor, smoothing, Worker::improve);
+            self.descend_policy(&rates.policy);
+            sums.values += self.sum(|worker| worker.values) / rows as f64;
+            sums.policy_steps += 1;
+            let learned = &mut self.learned;
+            follow(&mut learned.target, &learned.params, tau);
+            for critic in &mut learned.critics.each {
+                follow(&mut critic.target, &critic.params, tau);
+            }
+        }
+    }
+
+    /// Every worker does this once, on any thread.
+    fn run(
+        &self,
+        executor: &dyn Executor,
+        smoothing: &[(f32, f32)],
+        act: impl Fn(&mut Worker<P>, &Step<'_, P>) + Sync,
+    ) {
+        let step = Step {
+            policy: &*self.policy,
+            params: &self.learned.params,
+            target: &self.learned.target,
+            critics: &self.learned.critics,
+            sample: &self.sample,
+            scaling: &self.learned.scaling,
+            view: self.view,
+            limits: &self.limits,
+            rows: self.config.replay.batch_rows,
+            smoothing,
+        };
+        executor.for_each(self.workers.len(), &|i| {
+            act(&mut self.workers[i].lock().unwrap_or_else(PoisonError::into_inner), &step);
+        });
+    }
+
+    /// A sum over the workers, in their order.
+    fn sum(&mut self, of: impl Fn(&Worker<P>) -> f64) -> f64 {
+        self.workers.iter_mut().map(|worker| of(worker.get_mut().unwrap_or_else(PoisonError::into_inner))).sum()
+    }
+
+    fn descend_critics(&mut self, rates: &[f32]) {
+        let Learned { critics, .. } = &mut self.learned;
+        for (i, critic) in critics.each.iter_mut().enumerate() {
+            self.critic_gradient.fill(0.0);
+            for worker in &mut self.workers {
+                let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
+                critics.network.gradient(&worker.critics[i], &mut self.critic_gradient);
+            }
+            critic.adam.step(&mut critic.params, &self.critic_gradient, rates);
+        }
+    }
+
+    fn descend_policy(&mut self, rates: &[f32]) {
+        let mut workers = self.workers.iter_mut().map(|worker| worker.get_mut().unwrap_or_else(PoisonError::into_inner));
+        let Some(first) = workers.next() else { return };
+        for other in workers {
+            first.add_policy(&self.policy, other);
+        }
+        first.policy_gradient(&self.policy, &mut self.gradient);
+        self.learned.adam.step(&mut self.learned.params, &self.gradient, rates);
+    }
+}
+
+impl<P: Policy> Learner for Td3<P> {
+    fn params(&self) -> &[f32] {
+        &self.learned.params
+    }
+
+    fn metric_names(&self) -> &'static [&'static str] {
+        METRICS
+    }
+
+    /// Nothing that it has learned depends on which policy acted.
+    fn learns_from_others(&self) -> bool {
+        true
+    }
+
+    fn update(
+        &mut self,
+        executor: &dyn Executor,
+        batch: &Batch,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<Metrics, LearnError> {
+        let before = self.learned.clone();
+        let undo = self.replay.push(batch, &self.limits);
+        let mut sums = Sums::default();
+        if self.replay.steps() >= self.config.replay.warmup_steps {
+            self.learned.owed += batch.rows() as f64 * self.config.replay.updates_per_step;
+            let rates = self.rates(progress);
+            match self.learn(executor, &rates, iteration) {
+                Ok(done) => sums = done,
+                Err(error) => {
+                    self.learned = before;
+                    self.replay.take_back(&undo);
+                    return Err(error);
+                }
+            }
+        }
+        let value = self.learned.scaling.value;
+        let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
+        let td_error = value * mean(sums.squares, sums.steps).sqrt();
+        let value = value * mean(sums.values, sums.policy_steps);
+        Ok(Metrics::new(METRICS, vec![td_error, value, sums.steps as f64, self.replay.steps() as f64]))
+    }
+}
+
+impl<P: Policy> Persist for Td3<P> {
+    fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        with.part("learned", &mut self.learned)?;
+        with.part("replay", &mut self.replay)
+    }
+}

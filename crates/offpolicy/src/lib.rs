@@ -1,0 +1,20 @@
+//! Learners that live on old experience.
+//!
+//! With the mechanism in the policy, the action is what the mechanism does to the world: a force, with the commands that pass it
+//! by. A step that was taken is a fact about the world, and it stays true while the design moves. So a replay serves co-design as
+//! well as it serves control.
+
+#![forbid(unsafe_code)]
+
+mod config;
+mod critic;
+mod kind;
+mod learner;
+mod replay;
+mod sample;
+mod scaling;
+mod worker;
+
+pub use config::{ReplayConfig, Td3Config};
+pub use kind::Td3Kind;
+pub use learner::Td3;

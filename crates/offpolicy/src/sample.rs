@@ -1,0 +1,176 @@
+//! Rows drawn from the replay for one gradient step, and what critics see of them.
+
+use std::ops::Range;
+
+use hwasp_core::{Rows, Stream};
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::replay::{Dims, Replay};
+use crate::scaling::Scaling;
+
+/// Rows of a block that is worked on at once: its activations stay in the first-level cache.
+pub(crate) const BLOCK: usize = 64;
+
+/// The moments of one side of the steps: where they began, or where they led to.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Moments {
+    /// Controller inputs `[B × obs]`, row by row.
+    obs: Vec<f32>,
+    /// The law's state `[state × B]`, column by column.
+    state: Vec<f32>,
+    /// What the episodes are about `[B × context]`, row by row.
+    context: Vec<f32>,
+    /// The actions of the steps `[action × B]`, column by column: on both sides, for what is drawn once an episode.
+    action: Vec<f32>,
+}
+
+/// So many steps out of a replay.
+#[derive(Clone, Debug)]
+pub(crate) struct Sample {
+    dims: Dims,
+    count: usize,
+    pub(crate) now: Moments,
+    pub(crate) next: Moments,
+    /// Rewards up to the next moment, in units of the critics' values.
+    pub(crate) reward: Vec<f32>,
+    /// What the value of the next moment is worth.
+    pub(crate) discount: Vec<f32>,
+    /// Standard normal numbers `[action × B]`, for the actions at the next moments.
+    pub(crate) noise: Vec<f32>,
+}
+
+impl Moments {
+    fn new(dims: Dims, count: usize) -> Self {
+        Self {
+            obs: vec![0.0; count * dims.obs],
+            state: vec![0.0; count * dims.state],
+            context: vec![0.0; count * dims.context],
+            action: vec![0.0; count * dims.action],
+        }
+    }
+
+    /// Writes row `r` of `count`: the moment of a frame, and the action of another one.
+    fn take(&mut self, (r, count): (usize, usize), replay: &Replay, frame: usize, action: &[f32]) {
+        let put_row = |to: &mut [f32], from: &[f32]| to[r * from.len()..][..from.len()].copy_from_slice(from);
+        put_row(&mut self.obs, replay.obs(frame));
+        put_row(&mut self.context, replay.context(frame));
+        for (column, &x) in replay.state(frame).iter().enumerate() {
+            self.state[column * count + r] = x;
+        }
+        for (column, &x) in action.iter().enumerate() {
+            self.action[column * count + r] = x;
+        }
+    }
+}
+
+impl Sample {
+    /// Room for so many rows.
+    pub(crate) fn new(dims: Dims, count: usize) -> Self {
+        Self {
+            dims,
+            count,
+            now: Moments::new(dims, count),
+            next: Moments::new(dims, count),
+            reward: vec![0.0; count],
+            discount: vec![0.0; count],
+            noise: vec![0.0; count * dims.action],
+        }
+    }
+
+    /// Draws the rows, and the noise of the actions that follow them.
+    pub(crate) fn draw(
+        &mut self,
+        replay: &Replay,
+        (n_step, discount): (usize, f64),
+        value: f64,
+        chance: &mut Stream,
+    ) {
+        for r in 0..self.count {
+            let at = replay.draw(chance);
+            let ahead = replay.ahead(at, n_step, discount);
+            let action = replay.action(at);
+            self.now.take((r, self.count), replay, at, action);
+            self.next.take((r, self.count), replay, ahead.frame, action);
+            self.reward[r] = (ahead.reward / value) as f32;
+            self.discount[r] = ahead.discount as f32;
+        }
+        self.noise.fill_with(|| StandardNormal.sample(chance));
+    }
+
+    /// Blocks of a part of the rows, in order.
+    pub(crate) fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+        let end = rows.end;
+        rows.step_by(BLOCK).map(move |at| at..(at + BLOCK).min(end))
+    }
+
+    /// A block of moments as a policy takes it.
+    pub(crate) fn rows<'a>(&self, moments: &'a Moments, block: &Range<usize>) -> Rows<'a> {
+        let width = self.dims.obs;
+        Rows {
+            count: block.len(),
+            obs: &moments.obs[block.start * width..block.end * width],
+            state: moments.state.get(block.start..).unwrap_or(&[]),
+            action: moments.action.get(block.start..).unwrap_or(&[]),
+            stride: self.count,
+        }
+    }
+
+    /// The actions that were taken in a block, and the distance between their columns.
+    pub(crate) fn actions(&self, block: &Range<usize>) -> (&[f32], usize) {
+        (&self.now.action[block.start..], self.count)
+    }
+}
+
+/// What a critic sees, in this order: the controller's input, the law's state and the episode's context where it is shown them,
+/// the action.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    dims: Dims,
+    state: bool,
+    context: bool,
+}
+
+impl View {
+    pub(crate) fn new(dims: Dims, state: bool, context: bool) -> Self {
+        Self { dims, state: state && dims.state > 0, context: context && dims.context > 0 }
+    }
+
+    /// Where the action begins.
+    pub(crate) fn action_at(&self) -> usize {
+        self.dims.obs + if self.state { self.dims.state } else { 0 } + if self.context { self.dims.context } else { 0 }
+    }
+
+    pub(crate) fn width(&self) -> usize {
+        self.action_at() + self.dims.action
+    }
+
+    /// Writes the inputs of a block `[rows × width]` but for the actions.
+    pub(crate) fn fill(&self, sample: &Sample, moments: &Moments, block: &Range<usize>, scaling: &Scaling, to: &mut [f32]) {
+        let Dims { obs, context, .. } = self.dims;
+        for (r, to) in block.clone().zip(to.chunks_exact_mut(self.width())) {
+            to[..obs].copy_from_slice(&moments.obs[r * obs..][..obs]);
+            let mut at = obs;
+            if self.state {
+                for (s, affine) in scaling.state.iter().enumerate() {
+                    to[at + s] = affine.apply(moments.state[s * sample.count + r]);
+                }
+                at += self.dims.state;
+            }
+            if self.context {
+                for (c, affine) in scaling.context.iter().enumerate() {
+                    to[at + c] = affine.apply(moments.context[r * context + c]);
+                }
+            }
+        }
+    }
+
+    /// Writes the actions of so many rows, which lie column by column, into the inputs.
+    pub(crate) fn fill_actions(&self, rows: usize, (actions, stride): (&[f32], usize), scaling: &Scaling, to: &mut [f32]) {
+        let (at, width) = (self.action_at(), self.width());
+        for (a, affine) in scaling.action.iter().enumerate() {
+            for (r, &x) in actions[a * stride..][..rows].iter().enumerate() {
+                to[r * width + at + a] = affine.apply(x);
+            }
+        }
+    }
+}

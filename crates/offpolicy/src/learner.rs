@@ -137,7 +137,7 @@ impl<P: Policy> Td3<P> {
         let not_finite = |what| LearnError::NotFinite { what, iteration };
         let discount = self.config.replay.discount;
         if !self.learned.scaling.taken {
-            self.learned.scaling = Scaling::of(&self.replay, &*self.policy, discount);
+            self.learned.scaling = Scaling::of(&self.replay, (&*self.policy, &self.learned.params), discount);
         }
         let scaling = &self.learned.scaling;
         let (noise, clip) = (self.config.target_noise as f32, self.config.target_noise_clip as f32);
@@ -281,10 +281,10 @@ impl<P: Policy> Learner for Td3<P> {
                 }
             }
         }
-        let value = self.learned.scaling.value;
+        let (center, scale) = self.learned.scaling.value;
         let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
-        let td_error = value * mean(sums.squares, sums.steps).sqrt();
-        let value = value * mean(sums.values, sums.policy_steps);
+        let td_error = scale * mean(sums.squares, sums.steps).sqrt();
+        let value = center + scale * mean(sums.values, sums.policy_steps);
         Ok(Metrics::new(METRICS, vec![td_error, value, sums.steps as f64, self.replay.steps() as f64]))
     }
 }

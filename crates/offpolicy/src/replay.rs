@@ -261,22 +261,24 @@ impl Replay {
         Ahead { frame: at, reward, discount: if self.mark[at] == Mark::Over { 0.0 } else { factor } }
     }
 
-    /// Of each step held, what its episode still earned in the replay, discounted.
-    pub(crate) fn returns(&self, discount: f64) -> Vec<f64> {
+    /// Of each step held, from the newest on: what its episode still earned in the replay, discounted, and what the value of the
+    /// moment after it is worth, 0 where it was over for good.
+    pub(crate) fn returns(&self, discount: f64) -> Vec<(f64, f64)> {
         let count = self.frames();
-        if count == 0 {
-            return Vec::new();
-        }
-        let newest = (self.head + count - 1) % count;
-        let mut earned = 0.0;
+        let (mut earned, mut rest) = (0.0, 0.0);
         let back = (0..count).filter_map(|k| {
-            let at = (newest + count - k) % count;
-            if self.mark[at] != Mark::Step {
-                earned = 0.0;
-                return None;
+            let at = (self.head + 2 * count - 1 - k) % count;
+            match self.mark[at] {
+                Mark::Step => {
+                    earned = f64::from(self.reward[at]) + discount * earned;
+                    rest *= discount;
+                    return Some((earned, rest));
+                }
+                Mark::Cut => rest = 1.0,
+                Mark::Over => rest = 0.0,
             }
-            earned = f64::from(self.reward[at]) + discount * earned;
-            Some(earned)
+            earned = 0.0;
+            None
         });
         back.collect()
     }

@@ -31,7 +31,7 @@ pub(crate) struct Sample {
     count: usize,
     pub(crate) now: Moments,
     pub(crate) next: Moments,
-    /// Rewards up to the next moment, in units of the critics' values.
+    /// Rewards up to the next moment, as critics measure them.
     pub(crate) reward: Vec<f32>,
     /// What the value of the next moment is worth.
     pub(crate) discount: Vec<f32>,
@@ -78,23 +78,29 @@ impl Sample {
     }
 
     /// Draws the rows, and the noise of the actions that follow them.
-    pub(crate) fn draw(
-        &mut self,
-        replay: &Replay,
-        (n_step, discount): (usize, f64),
-        value: f64,
-        chance: &mut Stream,
-    ) {
+    pub(crate) fn draw(&mut self, replay: &Replay, ahead: (usize, f64), values: (f64, f64), chance: &mut Stream) {
         for r in 0..self.count {
-            let at = replay.draw(chance);
-            let ahead = replay.ahead(at, n_step, discount);
-            let action = replay.action(at);
-            self.now.take((r, self.count), replay, at, action);
-            self.next.take((r, self.count), replay, ahead.frame, action);
-            self.reward[r] = (ahead.reward / value) as f32;
-            self.discount[r] = ahead.discount as f32;
+            self.take(r, replay, replay.draw(chance), ahead, values);
         }
         self.noise.fill_with(|| StandardNormal.sample(chance));
+    }
+
+    /// Row `r` is this step: it counts `n_step` rewards, and values are measured by their centre and scale.
+    pub(crate) fn take(
+        &mut self,
+        r: usize,
+        replay: &Replay,
+        at: usize,
+        (n_step, discount): (usize, f64),
+        (center, scale): (f64, f64),
+    ) {
+        let ahead = replay.ahead(at, n_step, discount);
+        let action = replay.action(at);
+        self.now.take((r, self.count), replay, at, action);
+        self.next.take((r, self.count), replay, ahead.frame, action);
+        // y = reward + discount·(center + scale·q'), and critics say (y - center)/scale.
+        self.reward[r] = ((ahead.reward - (1.0 - ahead.discount) * center) / scale) as f32;
+        self.discount[r] = ahead.discount as f32;
     }
 
     /// Blocks of a part of the rows, in order.

@@ -26,10 +26,12 @@ impl Affine {
 pub(crate) struct Scaling {
     pub(crate) state: Vec<Affine>,
     pub(crate) context: Vec<Affine>,
-    /// Commands and designs by their limits, efforts by what was seen of them.
+    /// Commands and designs by their limits, efforts by twice the spread of their noise: a critic has to tell what the noise does
+    /// from what the command does.
     pub(crate) action: Vec<Affine>,
-    /// Values are so many times what critics say: the root mean square of the returns that were seen.
-    pub(crate) value: f64,
+    /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen. A critic
+    /// that began at 0 would take steps by the thousands to learn what every state is worth alike.
+    pub(crate) value: (f64, f64),
     pub(crate) taken: bool,
 }
 
@@ -41,13 +43,13 @@ impl Scaling {
             state: vec![one; dims.state],
             context: vec![one; dims.context],
             action: vec![one; dims.action],
-            value: 1.0,
+            value: (0.0, 1.0),
             taken: false,
         }
     }
 
     /// That of what a replay holds.
-    pub(crate) fn of(replay: &Replay, policy: &impl Policy, discount: f64) -> Self {
+    pub(crate) fn of<P: Policy>(replay: &Replay, (policy, params): (&P, &[f32]), discount: f64) -> Self {
         let dims = Dims::of(policy);
         let frames = replay.step_frames();
         let each = |row: &dyn Fn(usize) -> f32| -> Affine {
@@ -57,22 +59,33 @@ impl Scaling {
             let std = square.sqrt() as f32;
             Affine { center: mean as f32, scale: if std > 1e-6 { std } else { 1.0 } }
         };
-        let returns = replay.returns(discount);
-        let square = returns.iter().map(|r| r * r).sum::<f64>() / returns.len().max(1) as f64;
-        let limits = policy.action_limits();
+        let (limits, mut log_std) = (policy.action_limits(), vec![0.0; dims.action]);
+        policy.log_std(params, 0.0, &mut log_std);
         Self {
             state: (0..dims.state).map(|s| each(&|i| replay.state(i)[s])).collect(),
             context: (0..dims.context).map(|c| each(&|i| replay.context(i)[c])).collect(),
             action: (0..dims.action)
                 .map(|a| match limits[a] {
                     Some((lo, hi)) => Affine { center: 0.5 * (lo + hi), scale: 0.5 * (hi - lo) },
-                    None => each(&|i| replay.action(i)[a]),
+                    None => Affine { center: 0.0, scale: 2.0 * log_std[a].exp() },
                 })
                 .collect(),
-            value: if square > 0.0 { square.sqrt() } else { 1.0 },
+            value: values(replay, discount),
             taken: true,
         }
     }
+}
+
+/// Mean and spread of the returns of all steps. What follows a cut episode counts as the mean itself:
+/// m = E[R] + E[γ^rest]·m.
+fn values(replay: &Replay, discount: f64) -> (f64, f64) {
+    let returns = replay.returns(discount);
+    let n = returns.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| returns.iter().map(of).sum::<f64>() / n;
+    let (earned, rest) = (mean(&|r| r.0), mean(&|r| r.1));
+    let center = earned / (1.0 - rest).max(1e-3);
+    let spread = mean(&|r| (r.0 + r.1 * center - center).powi(2)).sqrt();
+    (center, if spread > 1e-6 { spread } else { 1.0 })
 }
 
 impl Persist for Scaling {
@@ -80,7 +93,8 @@ impl Persist for Scaling {
         let mut taken = u64::from(self.taken);
         with.number("taken", &mut taken)?;
         self.taken = taken != 0;
-        with.number("value", &mut self.value)?;
+        with.number("value_center", &mut self.value.0)?;
+        with.number("value_scale", &mut self.value.1)?;
         for (name, all) in [("state", &mut self.state), ("context", &mut self.context), ("action", &mut self.action)] {
             let mut pairs: Vec<f32> = all.iter().flat_map(|affine| [affine.center, affine.scale]).collect();
             with.vector(name, &mut pairs)?;

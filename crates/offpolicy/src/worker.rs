@@ -184,3 +184,6 @@ impl<P: Policy> Worker<P> {
         policy.gradient(&mut self.live, gradient);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,8 +30,20 @@ pub const UNSCALED: Settings = &[
     ("cmaes.popsize", "4"),
 ];
 
+/// A small learner with a replay that overflows, whose gradient steps are three jobs.
+pub const OFF_POLICY: Settings = &[
+    ("learner.algorithm", "td3"),
+    ("td3.warmup_steps", "1500"),
+    ("td3.replay_frames", "4000"),
+    ("td3.batch_rows", "300"),
+    ("td3.critic_hidden", "[16, 16]"),
+    ("td3.updates_per_step", "0.03"),
+    ("td3.n_step", "2"),
+    ("td3.privileged", "true"),
+];
+
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 12] = [
+pub const KINDS: [(&str, Settings); 14] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -44,6 +56,8 @@ pub const KINDS: [(&str, Settings); 12] = [
     ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
     ("hwasp", UNSCALED),
     ("cmaes-rl", UNSCALED),
+    ("hwasp", OFF_POLICY),
+    ("minimal", OFF_POLICY),
 ];
 
 /// The problems and learners that come with the program.

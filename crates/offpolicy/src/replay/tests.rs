@@ -52,7 +52,8 @@ fn n_steps_by_hand() {
     // What is over for good is worth nothing more.
     assert_eq!(replay.ahead(5, 3, 0.5), Ahead { frame: 6, reward: 5.0, discount: 0.0 });
     // From the newest step to the oldest: 5, then 4, 3 + 4/2, 2 + 5/2, 1 + 4.5/2.
-    assert_eq!(replay.returns(0.5), [5.0, 4.0, 5.0, 4.5, 3.25]);
+    let returns = [(5.0, 0.0), (4.0, 0.5), (5.0, 0.25), (4.5, 0.125), (3.25, 0.0625)];
+    assert_eq!(replay.returns(0.5), returns);
 }
 
 /// The world saw the command at its limit, and the critic has to see what the world saw.

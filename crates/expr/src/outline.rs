@@ -5,10 +5,10 @@ use std::ops::Range;
 use crate::parser::parse;
 use crate::syntax::{Node, Operator, Path, Tree};
 
-/// The conditions of which one is enough: those that a formula joins by `or`, each by its bytes in the text. The whole of a text that
-/// joins none, or is no formula.
+/// The conditions of which one is enough: those that a formula joins by `or`, each by its bytes in the text. The whole where
+/// it joins none; none of a text that is no formula.
 pub fn alternatives(text: &str) -> Vec<Range<usize>> {
-    let Ok(tree) = parse(text) else { return vec![0..text.len()] };
+    let Ok(tree) = parse(text) else { return Vec::new() };
     let mut found = Vec::new();
     let mut left = vec![&tree];
     while let Some(tree) = left.pop() {

@@ -15,6 +15,8 @@ use crate::robot::{Additions, Ends, Formula, Outputs, Robot, Shaping};
 use crate::settings::{Base, ModelSettings, Readings};
 use crate::texts::{node_at, tell, tell_at};
 
+/// Places of an experiment that may read the design.
+const PLACES: [&str; 5] = ["the law", "the start", "the observation", "reward and end", "draws and forces"];
 /// Steps of an episode where an experiment says nothing.
 const HORIZON: usize = 1000;
 /// The most columns that a law's states and an observation have.
@@ -159,29 +161,22 @@ impl Compiler<'_, '_> {
         let purpose: Vec<Part> = terms.iter().map(|(_, part)| *part).chain(ends).chain(success).collect();
         let around: Vec<Part> =
             forces.iter().flat_map(|(parts, _)| parts).chain(random.iter().flatten()).copied().collect();
-        let places = [
-            (&law[..], "the law"),
-            (start.as_ref().map_or(&[][..], |(parts, _)| parts), "the start"),
-            (&watched, "the observation"),
-            (&purpose, "reward and end"),
-            (&around, "draws and forces"),
-        ];
+        let begun = start.as_ref().map_or(&[][..], |(parts, _)| parts);
+        let places = [&law[..], begun, &watched, &purpose, &around].into_iter().zip(PLACES).collect::<Vec<_>>();
         let uses = self.uses(uniforms.len(), shaping.as_ref(), &places);
-        let begun = start.iter().flat_map(|(parts, _)| parts).chain(delays.iter().flatten());
-        let begun: Vec<Part> = begun.chain(shaping.iter().flat_map(|found| &found.parts)).copied().collect();
-        let (_, tried) = self.formulas.inputs(&begun);
+        let shaped = shaping.as_ref().map_or(&[][..], |found| &found.parts);
+        let tried = self.parameters_of(&[begun, delays.as_deref().unwrap_or_default(), shaped].concat());
         let (law, states) = self.traced_law(&space, &law)?;
         let shaping = shaping.map(|found| Shaping {
             formula: formula(self, None, numbered(&found.parts)),
             fields: found.fields,
             parameters: found.parameters,
         });
-        let mut outputs: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
-        let observations = outputs.len();
+        let (mut outputs, observations) = (watched.clone(), watched.len());
         outputs.extend(terms.iter().map(|(_, part)| *part));
         outputs.extend(ends.into_iter().chain(success));
         outputs.extend(&kinds);
-        let memory: Vec<Part> = self.names.memory.clone();
+        let memory = self.names.memory.clone();
         outputs.extend(&memory);
         let place = |column: Column| self.names.columns.all().iter().position(|&known| known == column);
         let memory_columns: Vec<usize> = (0..memory.len()).filter_map(|i| place(Column::Memory(i))).collect();
@@ -195,8 +190,9 @@ impl Compiler<'_, '_> {
         let mut env = self.env(&observed, &law);
         // What only the law reads is not sampled where the law's efforts are.
         let by_task = self.commands_of(&outputs);
-        let of_law = |i: usize| direct[i].is_none() && law_reads.contains(&i) && !by_task.contains(&i);
-        env.command.iter_mut().enumerate().for_each(|(i, port)| port.direct = !of_law(i));
+        for i in law_reads.into_iter().filter(|&i| direct[i].is_none() && !by_task.contains(&i)) {
+            env.command[i].direct = false;
+        }
         let groups = shaping.iter().flat_map(|shaping: &Shaping| &shaping.parameters);
         env.shaped_by = groups.map(|&i| uniforms[i].clone()).collect();
         env.terms = terms.iter().map(|(name, _)| name.clone()).collect();
@@ -263,6 +259,11 @@ impl Compiler<'_, '_> {
             };
             self.refuse(&["keyframe"], format!("the model has no keyframe `{}`", settings.keyframe), Some(hint));
         }
+    }
+
+    /// The parameters of the design that some scalars depend on.
+    fn parameters_of(&self, parts: &[Part]) -> Vec<usize> {
+        self.formulas.inputs(parts).1
     }
 
     /// The commands that some scalars depend on.

@@ -210,6 +210,11 @@ pub trait Environment: Send {
         None
     }
 
+    /// What ended an episode that [terminated](End::Terminated) in the last step, where the task can tell; for messages.
+    fn ended_by(&self) -> Option<String> {
+        None
+    }
+
     /// What is to be seen now, for films; none where nobody has said how it looks. The episode goes on with the same bits.
     fn look(&mut self) -> Option<Sight> {
         None

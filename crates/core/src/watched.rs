@@ -74,6 +74,10 @@ impl<W: Watch> Environment for Watched<W> {
         self.inner.outcome()
     }
 
+    fn ended_by(&self) -> Option<String> {
+        self.inner.ended_by()
+    }
+
     fn look(&mut self) -> Option<Sight> {
         self.inner.look()
     }

@@ -12,7 +12,7 @@ use rand_distr::StandardNormal;
 
 use crate::body::Body;
 use crate::columns::Column;
-use crate::delay::Delay;
+use crate::delay::{DELAYS, Delay};
 use crate::ready::Ready;
 use crate::robot::{Formula, Robot};
 
@@ -228,8 +228,9 @@ impl ModelEnvironment {
         let mut delays = [0; 2];
         if let (Some(formula), Some(ready)) = (&robot.delays, &mut self.delays) {
             ready.run(formula, &self.values);
-            for (steps, &time) in delays.iter_mut().zip(&ready.out) {
-                *steps = Delay::steps(time, self.spec.time_step)?;
+            for ((steps, &time), key) in delays.iter_mut().zip(&ready.out).zip(DELAYS) {
+                let told = |fault| format!("`{key}` of [task]: {fault}");
+                *steps = Delay::steps(time, self.spec.time_step).map_err(told)?;
             }
         }
         self.seen.begin(delays[0]);
@@ -365,6 +366,11 @@ impl Environment for ModelEnvironment {
     fn outcome(&self) -> Option<Outcome> {
         let kind = Arc::clone(&self.robot.kinds[self.kind]);
         self.robot.outputs.success.then_some(Outcome { kind, success: self.success })
+    }
+
+    fn ended_by(&self) -> Option<String> {
+        let holds = self.robot.outputs.ends_at().is_some_and(|at| self.step.out[at] != 0.0);
+        holds.then(|| self.robot.ends.which(&self.design, &self.values))
     }
 
     fn look(&mut self) -> Option<Sight> {

@@ -166,6 +166,10 @@ impl Mechanism for Model {
         crate::changes::changes(&self.0, before, after)
     }
 
+    fn doubts(&self) -> Vec<String> {
+        crate::held::doubts(&self.0)
+    }
+
     /// The model with the design, and the files that it refers to.
     fn write(&self, format: ModelFormat, design: &[f64]) -> Result<Vec<ModelFile>, AnyError> {
         if format != ModelFormat::Mjcf {
@@ -175,11 +179,7 @@ impl Mechanism for Model {
         let mut making = robot.additions.spec(&robot.main, &robot.files)?;
         if let Some(shaping) = &robot.shaping {
             let columns = crate::corners::columns(robot, design, 0.0, 1.0);
-            let mut tape = shaping.formula.program.tape::<f64>(1);
-            let mut out = vec![0.0; shaping.fields.len()];
-            shaping.formula.program.bind(design, &mut tape);
-            shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
-            for (field, &value) in shaping.fields.iter().zip(&out) {
+            for (field, value) in shaping.fields.iter().zip(shaping.formula.run(design, &columns)) {
                 making.set(field, value)?;
             }
         }

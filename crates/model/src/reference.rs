@@ -29,7 +29,8 @@ const OTHERS: [(&str, &str); 13] = [
 /// The fields of the model that designs can set, as a table in Markdown.
 pub fn settable() -> String {
     let mut text = "| field | numbers | measures |\n|---|---|---|\n".to_owned();
-    for field in settable_fields() {
+    // The time step is that of the model's file: the compiler refuses to set it.
+    for field in settable_fields().into_iter().filter(|field| (field.kind, field.name) != (Kind::Options, "timestep")) {
         let element = if field.kind == Kind::Options { "" } else { ".NAME" };
         let numbers = match (field.len, field.letters.is_empty()) {
             (1, _) => "1".to_owned(),

@@ -8,6 +8,7 @@ use hwasp_diff::Program;
 use hwasp_expr::Distribution;
 use hwasp_mujoco::engine::{Element, FieldPath, Files, Simulation, Spec, SpecError, View};
 use hwasp_problem::AnyError;
+use hwasp_settings::text::shorten;
 
 use crate::columns::{Column, Reading};
 
@@ -27,6 +28,17 @@ pub(crate) enum Target {
 pub(crate) struct Formula {
     pub(crate) program: Program,
     pub(crate) draws: Vec<(Distribution, usize)>,
+}
+
+impl Formula {
+    /// What it comes to once; for steps there is [`Ready`](crate::ready::Ready).
+    pub(crate) fn run(&self, design: &[f64], values: &[f64]) -> Vec<f64> {
+        let mut tape = self.program.tape::<f64>(1);
+        let mut out = vec![0.0; self.program.output_names().len()];
+        self.program.bind(design, &mut tape);
+        self.program.forward(values, 1, 1, &mut tape, &mut out, 1);
+        out
+    }
 }
 
 /// Fields of the model that follow design and random quantities.
@@ -91,6 +103,7 @@ pub(crate) struct Robot {
     pub(crate) step: Formula,
     pub(crate) outputs: Outputs,
     pub(crate) kinds: Vec<Arc<str>>,
+    pub(crate) ends: Ends,
     /// Bodies that forces act on, with 3 or 6 components.
     pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
     /// Times in s: of the observation, of the command.
@@ -108,6 +121,25 @@ pub(crate) struct Robot {
     pub(crate) uses: Vec<String>,
     /// Compiled as the design begins, to be cloned.
     pub(crate) simulation: Mutex<Simulation>,
+}
+
+/// What ends episodes.
+#[derive(Clone, Debug)]
+pub(crate) struct Ends {
+    pub(crate) text: String,
+    /// Its conditions by name, of which one is enough; none where there is one alone, or they cannot be told apart.
+    pub(crate) apart: Option<Formula>,
+}
+
+impl Ends {
+    /// The condition that holds.
+    pub(crate) fn which(&self, design: &[f64], values: &[f64]) -> String {
+        let holds = self.apart.as_ref().and_then(|apart| {
+            let at = apart.run(design, values).iter().position(|&holds| holds != 0.0)?;
+            Some(apart.program.output_names()[at].clone())
+        });
+        format!("`{}` of task.ends", holds.unwrap_or_else(|| shorten(&self.text, 60)))
+    }
 }
 
 /// What is added to a model.

@@ -22,8 +22,10 @@ choice! {
 }
 
 choice! {
-    /// How the root of a robot in URDF is held.
+    /// How the root of a robot is held.
     pub enum Base {
+        /// As its file says: to the world where a URDF says nothing.
+        AsModel = "as-model",
         /// To the world.
         Fixed = "fixed",
         /// Not at all.
@@ -42,7 +44,7 @@ pub struct ModelSettings {
     pub frame_skip: usize,
     /// See [`Readings`].
     pub readings: Readings,
-    /// How the root of a URDF is held.
+    /// How the root is held.
     pub base: Base,
     /// Whether a floor is added.
     pub floor: bool,
@@ -93,7 +95,7 @@ impl Default for ModelSettings {
             model_sha256: None,
             frame_skip: 1,
             readings: Readings::Fresh,
-            base: Base::Fixed,
+            base: Base::AsModel,
             floor: false,
             motors: Vec::new(),
             commands: Vec::new(),
@@ -216,7 +218,11 @@ impl ModelSettings {
             200,
             "where episodes start, before `start`; empty: as the model says",
         );
-        fields.choice("base", &mut self.base, "how the root of a robot in URDF is held");
+        fields.choice(
+            "base",
+            &mut self.base,
+            "how the robot's root is held: as its file says, to the world, or not at all",
+        );
         fields.flag("floor", &mut self.floor, "whether a floor is added, a plane at height 0");
         let about = "motors that are added to joints: `{ knee = { limits = [-1, 1], gear = 50 } }`";
         commands_field(fields, "motors", &mut self.motors, about);
@@ -274,7 +280,9 @@ impl ModelSettings {
             let hint = "name the robot's model, MJCF or URDF, relative to the experiment: model = \"robot.xml\"";
             return section.clash("model", "task.model is missing".into(), hint);
         }
-        if !section.all_sound() {
+        // What is wrong elsewhere hides no fault of the formulas.
+        let whole = ["model", "model_sha256", "frame_skip", "readings", "base", "floor", "motors", "commands"];
+        if !whole.iter().all(|key| section.sound(&[key]) && section.sound_below(&section.path(key))) {
             return;
         }
         match gather(section.folder(), &self.model) {

@@ -39,5 +39,5 @@ pub use metrics::MetricsRow;
 pub use observer::{Event, FailedIteration, Observer, ObserverError};
 pub use paired::{Change, Reference};
 pub use train::{STILL, Trained, beginning, moved, params_at, repeat, train, train_by, train_from};
-pub use trial::Trial;
+pub use trial::{AT_ONCE, Trial};
 pub use worker::{LocalCollector, Worker};

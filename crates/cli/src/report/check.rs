@@ -6,7 +6,7 @@ use hwasp_core::{Dimension, EnvFault, EnvSpec, MADE_FROM, Policy, Port};
 use hwasp_experiment::Experiment;
 use hwasp_problem::{Role, Words};
 use hwasp_runs::text::{ReadableUnit, grouped};
-use hwasp_training::{Assembly, Trial};
+use hwasp_training::{AT_ONCE, Assembly, Trial};
 
 /// The most ports that are told.
 const MOST_PORTS: usize = 12;
@@ -107,6 +107,13 @@ fn tried(text: &mut String, assembly: &Assembly, trial: &Trial) {
                 .to_owned(),
         );
     }
+    let built = assembly.experiment().task.built();
+    if trial.is_over_at_once() {
+        warn(over_at_once(trial));
+    }
+    for doubt in built.mechanism.iter().flat_map(|mechanism| mechanism.doubts()) {
+        warn(doubt);
+    }
     if trial.fixed_start {
         warn("every episode starts alike: a controller may learn the one start by heart".to_owned());
     }
@@ -131,6 +138,17 @@ fn tried(text: &mut String, assembly: &Assembly, trial: &Trial) {
             train.episode_steps
         ));
     }
+}
+
+/// Of episodes that end as they begin.
+fn over_at_once(trial: &Trial) -> String {
+    let (count, cause) = &trial.at_once;
+    let cause = cause.as_ref().map_or_else(String::new, |cause| format!(", the first by {cause}"));
+    format!(
+        "{count} of {} episodes ended within {AT_ONCE} steps{cause}\nnothing is learned of what is over as it begins: see whether \
+         that holds at the start already (task.start), and what its numbers measure",
+        trial.episodes
+    )
 }
 
 /// The parts of a training.

@@ -131,7 +131,7 @@ impl Compiler<'_, '_> {
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
         let law_reads = self.commands_of(&law);
         let watched: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
-        let purpose: Vec<Part> = terms.iter().map(|(_, part)| *part).chain(ends).chain(success).collect();
+        let purpose: Vec<Part> = terms.iter().chain(&ends).map(|(_, part)| *part).chain(success).collect();
         let around: Vec<Part> =
             forces.iter().flat_map(|(parts, _)| parts).chain(random.iter().flatten()).copied().collect();
         let places = [
@@ -150,8 +150,7 @@ impl Compiler<'_, '_> {
         });
         let mut outputs: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
         let observations = outputs.len();
-        outputs.extend(terms.iter().map(|(_, part)| *part));
-        outputs.extend(ends.into_iter().chain(success));
+        outputs.extend(terms.iter().chain(&ends).map(|(_, part)| *part).chain(success));
         outputs.extend(&kinds);
         let memory: Vec<Part> = self.names.memory.clone();
         outputs.extend(&memory);
@@ -189,11 +188,12 @@ impl Compiler<'_, '_> {
             outputs: Outputs {
                 observations,
                 terms: terms.len(),
-                ends: ends.is_some(),
+                ends: ends.len(),
                 success: success.is_some(),
                 kinds: kinds.len(),
                 memory: memory.len(),
             },
+            ends: ends.iter().map(|(name, _)| Arc::from(name.as_str())).collect(),
             kinds: kind_names(settings),
             forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
             delays: delays.map(|parts| formula(self, None, numbered(&parts))),

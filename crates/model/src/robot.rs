@@ -43,7 +43,7 @@ pub(crate) struct Shaping {
 pub(crate) struct Outputs {
     pub(crate) observations: usize,
     pub(crate) terms: usize,
-    pub(crate) ends: bool,
+    pub(crate) ends: usize,
     pub(crate) success: bool,
     pub(crate) kinds: usize,
     pub(crate) memory: usize,
@@ -55,16 +55,17 @@ impl Outputs {
         self.observations..self.observations + self.terms
     }
 
-    pub(crate) fn ends_at(&self) -> Option<usize> {
-        self.ends.then_some(self.observations + self.terms)
+    pub(crate) fn ends_at(&self) -> Range<usize> {
+        let from = self.terms_at().end;
+        from..from + self.ends
     }
 
     pub(crate) fn success_at(&self) -> Option<usize> {
-        self.success.then_some(self.observations + self.terms + usize::from(self.ends))
+        self.success.then_some(self.ends_at().end)
     }
 
     pub(crate) fn kinds_at(&self) -> Range<usize> {
-        let from = self.observations + self.terms + usize::from(self.ends) + usize::from(self.success);
+        let from = self.ends_at().end + usize::from(self.success);
         from..from + self.kinds
     }
 }
@@ -90,6 +91,8 @@ pub(crate) struct Robot {
     pub(crate) start: Option<(Formula, Vec<Reading>)>,
     pub(crate) step: Formula,
     pub(crate) outputs: Outputs,
+    /// What ends are called; one that stands alone has no name.
+    pub(crate) ends: Vec<Arc<str>>,
     pub(crate) kinds: Vec<Arc<str>>,
     /// Bodies that forces act on, with 3 or 6 components.
     pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
@@ -199,7 +202,10 @@ impl Robot {
         }
         match self.env.terms.get(at - outputs.observations) {
             Some(term) => format!("the reward `{term}`"),
-            None if outputs.ends_at() == Some(at) => "`ends`".to_owned(),
+            None if outputs.ends_at().contains(&at) => match &*self.ends[at - outputs.ends_at().start] {
+                "" => "`ends`".to_owned(),
+                name => format!("the end `{name}`"),
+            },
             None if outputs.success_at() == Some(at) => "`success`".to_owned(),
             None => format!("the kind `{}`", self.kinds[at - outputs.kinds_at().start]),
         }

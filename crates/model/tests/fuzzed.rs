@@ -118,6 +118,7 @@ fn line() -> impl Strategy<Value = (&'static str, String)> {
     };
     prop_oneof![
         state().prop_map(|text| ("", format!("ends = \"{text}\"\n"))),
+        named("ends", vec!["fallen", "tilted"], state().boxed()),
         state().prop_map(|text| ("", format!("success = \"{text}\"\n"))),
         own().prop_map(|text| ("", format!("observation_delay = \"{text}\"\n"))),
         (select(vec!["0.01 s", "progress * 4 ms", "9 ms * half", "3"]))
@@ -149,7 +150,7 @@ fn experiment() -> impl Strategy<Value = String> {
             ("design", "gear = { limits = [1, 9] }\nshank = { limits = [\"0.1 m\", \"0.3 m\"] }\n"),
         ];
         let mut known: Vec<String> = Vec::new();
-        for table in ["", "reward", "define", "random", "design", "start", "forces", "law", "kinds"] {
+        for table in ["", "reward", "define", "random", "design", "start", "forces", "law", "kinds", "ends"] {
             if !table.is_empty() {
                 text.extend(["[task.", table, "]\n"]);
             }

@@ -1,5 +1,6 @@
 //! A world tried out before anything is trained in it: with random commands and designs.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use hwasp_core::{End, EnvFault, Purpose, check_env, stream};
@@ -26,6 +27,8 @@ pub struct Trial {
     pub most_steps: usize,
     /// Episodes that ended before that, by themselves.
     pub ended: u64,
+    /// How many of them by what, where the task has names for it.
+    pub ended_by: BTreeMap<String, u64>,
     /// Episodes whose physics failed, and how the first of them did.
     pub failed: (u64, Option<String>),
     /// Whether every episode starts alike.
@@ -47,6 +50,7 @@ impl Trial {
             steps: 0,
             most_steps,
             ended: 0,
+            ended_by: BTreeMap::new(),
             failed: (0, None),
             fixed_start: false,
             broken: None,
@@ -83,7 +87,12 @@ impl Trial {
                         let why = env.fault().unwrap_or_else(|| "for no reason that it tells".to_owned());
                         trial.failed.1.get_or_insert(format!("step {}: {why}", step + 1));
                     }
-                    Some(End::Terminated) => trial.ended += 1,
+                    Some(End::Terminated) => {
+                        trial.ended += 1;
+                        if let Some(name) = env.ended_by() {
+                            *trial.ended_by.entry((*name).to_owned()).or_default() += 1;
+                        }
+                    }
                     Some(End::Truncated) => {}
                 }
                 break;

@@ -50,7 +50,8 @@ impl Contender {
         // Values of parameters stand in one pair of braces, and nothing else has any.
         let table = initial.and_then(|initial| initial.strip_prefix('{')).map(|text| text.strip_suffix('}'));
         let inside = table.unwrap_or(initial).unwrap_or("}");
-        if initial.is_some() && inside.contains(['{', '}']) {
+        let named = table.is_none() || inside.contains('=') || inside.trim().is_empty();
+        if initial.is_some() && (inside.contains(['{', '}']) || !named) {
             let hint = format!("write values of parameters like {name}:'{{ gear = 70, shank = \"0.5 m\" }}'");
             return Err(CompareError::Contender { text: text.to_owned(), hint });
         }

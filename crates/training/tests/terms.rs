@@ -53,14 +53,14 @@ fn terms_add_up_to_the_return_on_any_number_of_threads() {
     }
 }
 
-/// A reward of 1e30 ended a training with "an advantage is not finite": nothing named the reward.
+/// A reward beyond single precision ended a training with "an advantage is not finite": nothing named the reward.
 #[test]
 fn a_reward_that_is_too_large_is_named() {
-    let settings = [("task.reward.place", "\"-1e30\""), ("train.env_steps", "6000")];
+    let settings = [("task.reward.place", "\"-1e60\""), ("train.env_steps", "6000")];
     let layers = settings.iter().fold(layers("balanced-arm"), |layers, (k, v)| layers.with_override(k, v));
     let assembly = Assembly::new(&resolve(layers, None).unwrap()).unwrap();
     let error = train(&assembly, &Serial, &mut (), &AtomicBool::new(false)).unwrap_err().to_string();
-    let start = "the reward is too large to learn from: up to 1.0e30 in a step of iteration 0, most of it from the term `place`";
+    let start = "the reward is too large to learn from: up to 1.0e60 in a step of iteration 0, most of it from the term `place`";
     assert!(error.starts_with(start) && error.contains("train.reward_scaling = true"), "{error}");
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly, trial: &Trial) 
         if design == 1 { "" } else { "s" },
         policy.param_count(),
         if assembly.generation().is_some() { "it gives" } else { "training varies" },
-        varied(policy.action_names(), &assembly.worlds.training.env, policy.space().names()),
+        varied(policy.action_names(), &assembly.worlds.training.env, &policy.space().names()),
         grouped(spec.train.env_steps),
         training(spec, assembly, trial),
     );
@@ -215,7 +215,7 @@ fn listed(ports: &[String]) -> String {
 
 /// The components of an action by what they are: a command and an effort may be called alike.
 fn varied(action: &[String], env: &EnvSpec, design: &[String]) -> String {
-    let mut parts: [(&str, Vec<String>); 3] = [("the design", vec![]), ("efforts", vec![]), ("commands", vec![])];
+    let mut parts: [(&str, Vec<String>); 3] = [("design", vec![]), ("effort", vec![]), ("command", vec![])];
     for name in action {
         // In this order they stand in an action, so that what was a command is none of the others afterwards.
         let effort = env.effort.iter().any(|port| port.name == *name);
@@ -229,7 +229,7 @@ fn varied(action: &[String], env: &EnvSpec, design: &[String]) -> String {
         parts[part].1.push(name.clone());
     }
     let parts = parts.iter().filter(|(_, names)| !names.is_empty());
-    parts.map(|(what, names)| format!("{what} {}", shorten(names))).collect::<Vec<_>>().join("; ")
+    parts.map(|(what, names)| format!("{} ({what})", shorten(names))).collect::<Vec<_>>().join("; ")
 }
 
 /// The first few of many names.

@@ -120,7 +120,10 @@ fn a_robot_without_a_design_is_compared_too() {
     );
     let output = sandbox.run("compare rod.toml --seeds 1 --env-steps 10000 --out all");
     let table = text(&output.stdout);
-    assert!(["fixed", "cmaes", "ars"].iter().all(|method| table.contains(&format!("| {method} | 1 |"))), "{output:?}");
+    assert!(
+        ["fixed", "cmaes", "ars"].iter().all(|method| table.contains(&format!("| {method} | 1 of 1 |"))),
+        "{output:?}"
+    );
 }
 
 /// A second comparison on the same folder ended both of them with `is in use`.

@@ -31,10 +31,10 @@ pub struct Outcome {
 }
 
 /// A shared text, for serde: whoever reads it has one of its own.
-mod shared_text {
+pub(crate) mod shared_text {
     use std::sync::Arc;
 
-    use serde::{Deserialize, Deserializer, Serializer};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub(super) fn serialize<S: Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(text)
@@ -42,6 +42,19 @@ mod shared_text {
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<str>, D::Error> {
         String::deserialize(deserializer).map(Arc::from)
+    }
+
+    /// The same of one that need not be there.
+    pub(crate) mod option {
+        use super::{Arc, Deserialize, Deserializer, Serialize, Serializer};
+
+        pub(crate) fn serialize<S: Serializer>(text: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
+            text.as_deref().serialize(serializer)
+        }
+
+        pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Arc<str>>, D::Error> {
+            Ok(Option::<String>::deserialize(deserializer)?.map(Arc::from))
+        }
     }
 }
 
@@ -161,6 +174,11 @@ pub trait Task: Send {
         false
     }
 
+    /// The name of what [`terminated`](Self::terminated) the episode, for tasks with several ways to end.
+    fn ended_by(&self) -> Option<Arc<str>> {
+        None
+    }
+
     /// Whether the episode so far is a success, for tasks that know.
     fn outcome(&self) -> Option<Outcome> {
         None
@@ -205,13 +223,13 @@ pub trait Environment: Send {
         &[]
     }
 
-    /// Whether the episode so far is a success, for tasks that know.
-    fn outcome(&self) -> Option<Outcome> {
+    /// The name of what ended the episode, after a step that [terminated](End::Terminated) it; none where nobody named it.
+    fn ended_by(&self) -> Option<Arc<str>> {
         None
     }
 
-    /// What ended an episode that [terminated](End::Terminated) in the last step, where the task can tell; for messages.
-    fn ended_by(&self) -> Option<String> {
+    /// Whether the episode so far is a success, for tasks that know.
+    fn outcome(&self) -> Option<Outcome> {
         None
     }
 
@@ -311,6 +329,10 @@ impl<T: Task> Environment for Robot<T> {
 
     fn terms(&self) -> &[f64] {
         self.task.terms()
+    }
+
+    fn ended_by(&self) -> Option<Arc<str>> {
+        self.task.ended_by()
     }
 
     fn outcome(&self) -> Option<Outcome> {

@@ -1,5 +1,7 @@
 //! Environments that somebody watches, or changes.
 
+use std::sync::Arc;
+
 use crate::environment::{EnvSpec, Environment, Outcome, Step};
 use crate::sight::Sight;
 use crate::streams::Stream;
@@ -70,12 +72,12 @@ impl<W: Watch> Environment for Watched<W> {
         self.inner.terms()
     }
 
-    fn outcome(&self) -> Option<Outcome> {
-        self.inner.outcome()
+    fn ended_by(&self) -> Option<Arc<str>> {
+        self.inner.ended_by()
     }
 
-    fn ended_by(&self) -> Option<String> {
-        self.inner.ended_by()
+    fn outcome(&self) -> Option<Outcome> {
+        self.inner.outcome()
     }
 
     fn look(&mut self) -> Option<Sight> {

@@ -64,7 +64,7 @@ pub use exponents::{Exponents, Quantity};
 pub use formulas::{Formulas, Part, Value};
 pub use function::{Function, Parameter, Signature, name_fault};
 pub use library::{LIBRARY, LawDoc, laws};
-pub use outline::{alternatives, groups};
+pub use outline::groups;
 pub use parser::LONGEST_TEXT;
 pub use reference::{FUNCTIONS, FunctionDoc};
 pub use scope::{Distribution, NameError, Scope, Symbol};

@@ -3,22 +3,7 @@
 use std::ops::Range;
 
 use crate::parser::parse;
-use crate::syntax::{Node, Operator, Path, Tree};
-
-/// The conditions of which one is enough: those that a formula joins by `or`, each by its bytes in the text. The whole where
-/// it joins none; none of a text that is no formula.
-pub fn alternatives(text: &str) -> Vec<Range<usize>> {
-    let Ok(tree) = parse(text) else { return Vec::new() };
-    let mut found = Vec::new();
-    let mut left = vec![&tree];
-    while let Some(tree) = left.pop() {
-        match &tree.node {
-            Node::Binary(Operator::Or, a, b) => left.extend([&**b, &**a]),
-            _ => found.push(tree.span.clone()),
-        }
-    }
-    found
-}
+use crate::syntax::{Node, Path, Tree};
 
 /// The names in a formula that stand for all elements of a kind, `joint.*.pos`, each with its bytes in the text, those of an index
 /// behind it included. None of a text that is no formula.

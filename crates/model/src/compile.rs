@@ -143,7 +143,7 @@ impl Compiler<'_, '_> {
         let law = self.law();
         let shaping = self.shaping(spec);
         let start = self.start();
-        let Watched { observed, terms, ends, apart, success, kinds } = self.step();
+        let Watched { observed, terms, ends, success, kinds } = self.step();
         let forces = self.forces();
         let delays = self.delays();
         self.check_keyframe();
@@ -158,7 +158,7 @@ impl Compiler<'_, '_> {
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
         let law_reads = self.commands_of(&law);
         let watched: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
-        let purpose: Vec<Part> = terms.iter().map(|(_, part)| *part).chain(ends).chain(success).collect();
+        let purpose: Vec<Part> = terms.iter().chain(&ends).map(|(_, part)| *part).chain(success).collect();
         let around: Vec<Part> =
             forces.iter().flat_map(|(parts, _)| parts).chain(random.iter().flatten()).copied().collect();
         let begun = start.as_ref().map_or(&[][..], |(parts, _)| parts);
@@ -173,8 +173,7 @@ impl Compiler<'_, '_> {
             parameters: found.parameters,
         });
         let (mut outputs, observations) = (watched.clone(), watched.len());
-        outputs.extend(terms.iter().map(|(_, part)| *part));
-        outputs.extend(ends.into_iter().chain(success));
+        outputs.extend(terms.iter().chain(&ends).map(|(_, part)| *part).chain(success));
         outputs.extend(&kinds);
         let memory = self.names.memory.clone();
         outputs.extend(&memory);
@@ -213,13 +212,13 @@ impl Compiler<'_, '_> {
             outputs: Outputs {
                 observations,
                 terms: terms.len(),
-                ends: ends.is_some(),
+                ends: ends.len(),
                 success: success.is_some(),
                 kinds: kinds.len(),
                 memory: memory.len(),
             },
+            ends: ends.iter().map(|(name, _)| Arc::from(name.as_str())).collect(),
             kinds: kind_names(settings),
-            ends: Ends { text: settings.ends.clone(), apart: (!apart.is_empty()).then(|| formula(self, None, apart)) },
             forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
             delays: delays.map(|parts| formula(self, None, numbered(&parts))),
             targets: targets.iter().map(|(_, target, _)| *target).collect(),

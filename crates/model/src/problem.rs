@@ -65,12 +65,13 @@ impl Problem for ModelProblem {
     }
 }
 
-/// What the robot is, what the parameters of its design do, and the terms of the reward.
+/// What the robot is, what the parameters of its design do, the terms of the reward and what ends an episode.
 fn words(settings: &ModelSettings, robot: &Robot) -> Words {
     let names = robot.law.design().names();
     let design: Vec<(String, String)> = names.into_iter().zip(robot.uses.iter().cloned()).collect();
     let ports = |role, of: Vec<(String, String)>| of.into_iter().map(move |(name, meaning)| (role, name, meaning));
-    let ports = ports(Role::Design, design).chain(ports(Role::Reward, settings.reward.clone())).collect();
+    let purpose = ports(Role::Reward, settings.reward.clone()).chain(ports(Role::End, settings.ends.clone()));
+    let ports = ports(Role::Design, design).chain(purpose).collect();
     Words { about: about(settings, robot), ports }
 }
 
@@ -87,12 +88,12 @@ fn about(settings: &ModelSettings, robot: &Robot) -> String {
         shaping => format!(" The model is made from {}.", listed(shaping.iter().map(String::as_str))),
     };
     format!(
-        "The robot is {}: {}, {:.3} kg as the design begins. The reward is the sum of {}. Designed: {}.{shaping}",
+        "The robot is {}: {}, {:.3} kg as the design begins. The reward is the sum of {}. {}{shaping}",
         settings.model,
         parts.join(", "),
         mass,
         listed(robot.env.terms.iter().map(String::as_str)),
-        listed(design),
+        if design.is_empty() { "Nothing is designed.".to_owned() } else { format!("Designed: {}.", listed(design)) },
     )
 }
 

@@ -8,7 +8,6 @@ use hwasp_diff::Program;
 use hwasp_expr::Distribution;
 use hwasp_mujoco::engine::{Element, FieldPath, Files, Simulation, Spec, SpecError, View};
 use hwasp_problem::AnyError;
-use hwasp_settings::text::shorten;
 
 use crate::columns::{Column, Reading};
 
@@ -55,7 +54,7 @@ pub(crate) struct Shaping {
 pub(crate) struct Outputs {
     pub(crate) observations: usize,
     pub(crate) terms: usize,
-    pub(crate) ends: bool,
+    pub(crate) ends: usize,
     pub(crate) success: bool,
     pub(crate) kinds: usize,
     pub(crate) memory: usize,
@@ -67,16 +66,17 @@ impl Outputs {
         self.observations..self.observations + self.terms
     }
 
-    pub(crate) fn ends_at(&self) -> Option<usize> {
-        self.ends.then_some(self.observations + self.terms)
+    pub(crate) fn ends_at(&self) -> Range<usize> {
+        let from = self.terms_at().end;
+        from..from + self.ends
     }
 
     pub(crate) fn success_at(&self) -> Option<usize> {
-        self.success.then_some(self.observations + self.terms + usize::from(self.ends))
+        self.success.then_some(self.ends_at().end)
     }
 
     pub(crate) fn kinds_at(&self) -> Range<usize> {
-        let from = self.observations + self.terms + usize::from(self.ends) + usize::from(self.success);
+        let from = self.ends_at().end + usize::from(self.success);
         from..from + self.kinds
     }
 }
@@ -95,15 +95,16 @@ pub(crate) struct Robot {
     pub(crate) columns: Vec<Column>,
     /// Columns of the law's states, in its order.
     pub(crate) states: Vec<usize>,
-    /// Columns of the law's commands and states: for the law at the rate of the physics.
+    /// The quantities of an episode, and their columns.
     pub(crate) random: Option<(Formula, Vec<usize>)>,
     pub(crate) shaping: Option<Shaping>,
     /// Targets in positions and velocities.
     pub(crate) start: Option<(Formula, Vec<Reading>)>,
     pub(crate) step: Formula,
     pub(crate) outputs: Outputs,
+    /// What ends are called; one that stands alone has no name.
+    pub(crate) ends: Vec<Arc<str>>,
     pub(crate) kinds: Vec<Arc<str>>,
-    pub(crate) ends: Ends,
     /// Bodies that forces act on, with 3 or 6 components.
     pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
     /// Times in s: of the observation, of the command.
@@ -121,25 +122,6 @@ pub(crate) struct Robot {
     pub(crate) uses: Vec<String>,
     /// Compiled as the design begins, to be cloned.
     pub(crate) simulation: Mutex<Simulation>,
-}
-
-/// What ends episodes.
-#[derive(Clone, Debug)]
-pub(crate) struct Ends {
-    pub(crate) text: String,
-    /// Its conditions by name, of which one is enough; none where there is one alone, or they cannot be told apart.
-    pub(crate) apart: Option<Formula>,
-}
-
-impl Ends {
-    /// The condition that holds.
-    pub(crate) fn which(&self, design: &[f64], values: &[f64]) -> String {
-        let holds = self.apart.as_ref().and_then(|apart| {
-            let at = apart.run(design, values).iter().position(|&holds| holds != 0.0)?;
-            Some(apart.program.output_names()[at].clone())
-        });
-        format!("`{}` of task.ends", holds.unwrap_or_else(|| shorten(&self.text, 60)))
-    }
 }
 
 /// What is added to a model.
@@ -231,7 +213,10 @@ impl Robot {
         }
         match self.env.terms.get(at - outputs.observations) {
             Some(term) => format!("the reward `{term}`"),
-            None if outputs.ends_at() == Some(at) => "`ends`".to_owned(),
+            None if outputs.ends_at().contains(&at) => match &*self.ends[at - outputs.ends_at().start] {
+                "" => "`ends`".to_owned(),
+                name => format!("the end `{name}`"),
+            },
             None if outputs.success_at() == Some(at) => "`success`".to_owned(),
             None => format!("the kind `{}`", self.kinds[at - outputs.kinds_at().start]),
         }

@@ -62,8 +62,8 @@ pub struct ModelSettings {
     pub observe: Vec<String>,
     /// The terms of the reward.
     pub reward: Named,
-    /// When an episode ends in failure.
-    pub ends: String,
+    /// When an episode ends in failure: conditions by name, or one whose name is empty.
+    pub ends: Named,
     /// Whether an episode is a success, at its end.
     pub success: String,
     /// Kinds of episodes, of which success is told apart: the first by name that holds at the start.
@@ -104,7 +104,7 @@ impl Default for ModelSettings {
             random: Vec::new(),
             observe: Vec::new(),
             reward: Vec::new(),
-            ends: String::new(),
+            ends: Vec::new(),
             success: String::new(),
             kinds: Vec::new(),
             start: Vec::new(),
@@ -125,8 +125,9 @@ impl PartialEq for ModelSettings {
     fn eq(&self, other: &Self) -> bool {
         let plain = |s: &Self| (s.model.clone(), s.frame_skip, s.readings, s.base, s.floor, s.keyframe.clone());
         let texts = |s: &Self| {
-            let one = [&s.ends, &s.success, &s.observation_delay, &s.command_delay].map(Clone::clone);
-            let named = [&s.define, &s.random, &s.reward, &s.kinds, &s.start, &s.forces, &s.law].map(Clone::clone);
+            let one = [&s.success, &s.observation_delay, &s.command_delay].map(Clone::clone);
+            let named =
+                [&s.define, &s.random, &s.reward, &s.ends, &s.kinds, &s.start, &s.forces, &s.law].map(Clone::clone);
             (one, named, s.observe.clone(), s.set.clone())
         };
         plain(self) == plain(other)
@@ -185,6 +186,26 @@ fn text_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut String, meanin
     });
 }
 
+/// One formula, whose name is empty, or a table of them.
+fn either_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut Named, meaning: &str) {
+    let item = match &value[..] {
+        [(name, text)] if name.is_empty() => Some(Item::from(text.as_str())),
+        _ => named_item(value),
+    };
+    let kind = Kind::AnyOf(vec![formula(), formulas()]);
+    fields.default("none").kind(kind).open(key, meaning, item, |section, node| {
+        let found = match node.value {
+            Value::Table(_) => named(section, key, node),
+            _ => {
+                text(section, key, node).map(|text| if text.is_empty() { vec![] } else { vec![(String::new(), text)] })
+            }
+        };
+        if let Some(found) = found {
+            *value = found;
+        }
+    });
+}
+
 /// A table of commands.
 fn commands_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut Vec<Command>, meaning: &str) {
     let keys = value.iter().map(|command| (command.name.clone(), command.item())).collect();
@@ -238,7 +259,8 @@ impl ModelSettings {
         named_field(fields, "random", &mut self.random, "quantities that are drawn when an episode starts");
         list_field(fields, "observe", &mut self.observe, "what the controller sees");
         named_field(fields, "reward", &mut self.reward, "terms of the reward of a step, by name");
-        text_field(fields, "ends", &mut self.ends, "when an episode ends before its time, in failure");
+        let about = "when an episode ends before its time, in failure: one condition, or several by name, `{ fallen = \"body.torso.pos.z < 0.5 m\" }`";
+        either_field(fields, "ends", &mut self.ends, about);
         text_field(fields, "success", &mut self.success, "whether an episode is a success, at its end");
         let about =
             "kinds of episodes of which success is told apart: the first by name that holds at the start, else `other`";

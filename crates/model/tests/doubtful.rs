@@ -5,7 +5,6 @@
 mod common;
 
 use common::{experiment, resolved, robot};
-use hwasp_core::{End, Purpose, stream};
 
 /// Two rods beside each other, whose ends a constraint joins.
 const BARS: &str = r#"<mujoco>
@@ -128,22 +127,6 @@ fn observations_are_called_by_what_they_read() {
         "sensor.centre[2] * 1 | m",
     ];
     assert_eq!(found[..wanted.len()], wanted);
-}
-
-/// Which of several conditions ended an episode is told.
-#[test]
-fn the_end_that_came_is_named() {
-    for (ends, said) in [
-        ("joint.slide.pos > 5 or not (joint.slide.vel < 1) or time > 9", "`not (joint.slide.vel < 1)` of task.ends"),
-        ("joint.slide.vel > 1", "`joint.slide.vel > 1` of task.ends"),
-        ("time > 9 or diff(joint.slide.pos) > 0.1 mm", "`time > 9 or diff(joint.slide.pos) > 0.1 mm` of task.ends"),
-    ] {
-        let mut robot = robot(&BENCH.replace("DAMPING", "0"), &format!("ends = \"{ends}\"\n"));
-        robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
-        assert_eq!(robot.ended_by(), None);
-        let end = (0..100).find_map(|_| robot.step(&[], &[9.0, 0.0]).end);
-        assert_eq!((end, robot.ended_by().as_deref()), (Some(End::Terminated), Some(said)));
-    }
 }
 
 /// `base = "fixed"` was not heeded where the model's file frees its base.

@@ -238,6 +238,21 @@ fn a_robot_is_written_and_read_back() {
     assert!(error.contains("not those that it was trained with"), "{error}");
 }
 
+/// Ends by name are written and read back, and what is wrong in one is told at its place; one alone needs no name.
+#[test]
+fn ends_have_names() {
+    let text = "[task.ends]\nfast = \"joint.slide.vel > 1\"\nright = \"joint.slide.pos > 0.02\"\n\
+                [task.start]\n\"joint.slide.pos\" = \"0.05\"\n";
+    let first = experiment(text);
+    let written = first.to_toml().unwrap();
+    let layers = Layers::from_text("e.toml", &written).unwrap().with_folder(Folder::Sent(Arc::clone(first.files())));
+    assert_eq!(resolve(layers, None, catalogue()).unwrap(), first);
+    let mut robot = robot(text);
+    begin(&mut *robot, 0);
+    assert_eq!(robot.step(&[], &[0.0, 0.0]).end, Some(End::Terminated));
+    assert_eq!(robot.ended_by().as_deref(), Some("right"));
+}
+
 /// A step allocates nothing, whatever is read, drawn, remembered and pushed.
 #[test]
 fn a_step_allocates_nothing() {

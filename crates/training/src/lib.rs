@@ -31,7 +31,7 @@ pub use checkpoint::Checkpoint;
 pub use collect::Collector;
 pub use error::TrainError;
 pub use evaluate::{evaluate, evaluate_by, evaluate_in, evaluate_native, evaluate_native_by, held_out, sampler};
-pub use evaluation::{EvaluateError, Evaluation, MeanInterval, SuccessRate};
+pub use evaluation::{Ends, EvaluateError, Evaluation, MeanInterval, SuccessRate};
 pub use hwasp_experiment::total_name;
 pub use hwasp_problem::{StandInKind, World};
 pub use learned::TRAILING;

@@ -99,19 +99,21 @@ impl Compiler<'_, '_> {
         }
         let terms = self.each("reward", &settings.reward);
         let kinds = self.each("kinds", &settings.kinds).into_iter().map(|(_, part)| part).collect();
-        let mut one = |key: &str, text: &str| {
-            if text.is_empty() { None } else { self.scalar(&[key], text, Place::Step).map(|(part, _)| part) }
+        let ends = self.each("ends", &settings.ends);
+        let success = match &*settings.success {
+            "" => None,
+            text => self.scalar(&["success"], text, Place::Step).map(|(part, _)| part),
         };
-        let (ends, success) = (one("ends", &settings.ends), one("success", &settings.success));
-        let apart = if ends.is_some() { self.ends_apart(&settings.ends) } else { Vec::new() };
-        Watched { observed, terms, ends, apart, success, kinds }
+        Watched { observed, terms, ends, success, kinds }
     }
 
-    /// Scalars by name.
+    /// Scalars by name; one without a name stands in the place of the table.
     pub(super) fn each(&mut self, table: &str, texts: &Named) -> Vec<(String, Part)> {
         let mut parts = Vec::new();
         for (name, text) in texts {
-            if let Some((part, _)) = self.scalar(&[table, name], text, Place::Step) {
+            let keys = [table, name];
+            let keys = if name.is_empty() { &keys[..1] } else { &keys };
+            if let Some((part, _)) = self.scalar(keys, text, Place::Step) {
                 parts.push((name.clone(), part));
             }
         }
@@ -229,9 +231,8 @@ pub(super) struct Watched {
     pub(super) observed: Vec<(Vec<Port>, Value)>,
     /// Terms of the reward, by name.
     pub(super) terms: Vec<(String, Part)>,
-    pub(super) ends: Option<Part>,
-    /// The conditions of which one is enough, where they can be told apart.
-    pub(super) apart: Vec<(String, Part)>,
+    /// When an episode ends, by name.
+    pub(super) ends: Vec<(String, Part)>,
     pub(super) success: Option<Part>,
     pub(super) kinds: Vec<Part>,
 }

@@ -1,9 +1,9 @@
-//! What the parts of formulas are called: each element of what is observed, each condition that ends an episode.
+//! What the elements of an observation are called.
 
 use std::ops::Range;
 
 use hwasp_core::{Dimension, Port};
-use hwasp_expr::{Part, Path, Value, alternatives, groups};
+use hwasp_expr::{Part, Path, Value, groups};
 use hwasp_settings::text::shorten;
 
 use super::Compiler;
@@ -11,8 +11,6 @@ use crate::names::{InPlace, Place};
 
 /// The most elements that are called by what they read; of more, each by its number.
 const MOST_CALLED: usize = 200;
-/// The most conditions that are told apart.
-const MOST_ENDS: usize = 100;
 
 impl Compiler<'_, '_> {
     /// What the components of an observation are called, and what they measure. `clip(joint.*.vel, -1, 1)` is
@@ -57,23 +55,6 @@ impl Compiler<'_, '_> {
         })?;
         let dimension = value.quantity.dimension().unwrap_or(Dimension::None);
         (value.parts.len() == 1).then(|| Port { name: shorten(&shown, 60), dimension })
-    }
-
-    /// The conditions of which one is enough to end an episode, where they can be told apart afterwards: none draws or remembers.
-    pub(super) fn ends_apart(&mut self, text: &str) -> Vec<(String, Part)> {
-        let parts = alternatives(text);
-        if !(2..=MOST_ENDS).contains(&parts.len()) {
-            return Vec::new();
-        }
-        let read = |span: Range<usize>| -> Option<(String, Part)> {
-            let own = &text[span];
-            let part = self.on_trial(|compiler| {
-                let mut scope = InPlace { names: &mut compiler.names, place: Place::Step, width: 1 };
-                compiler.formulas.read(own, &mut scope).ok().filter(|value| value.parts.len() == 1)
-            })?;
-            Some((shorten(own, 60), part.parts[0]))
-        };
-        parts.into_iter().map(read).collect::<Option<_>>().unwrap_or_default()
     }
 
     /// Reads something that the robot does not compute: it leaves no column and remembers nothing. None where it would.

@@ -251,6 +251,7 @@ mod tests {
             undiscounted_return: 2.0,
             steps: 5 * moments,
             end: End::Truncated,
+            ended_by: None,
             outcome: None,
             terms: vec![],
         };

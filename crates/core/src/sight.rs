@@ -136,7 +136,8 @@ impl Cord {
     pub fn spring([from, to]: [[f64; 3]; 2], across: [f64; 3], bends: usize, colour: [u8; 3]) -> Self {
         let on_line = |share: f64| -> [f64; 3] { std::array::from_fn(|k| from[k] + share * (to[k] - from[k])) };
         let bend = |i: usize| -> [f64; 3] {
-            let (at, side) = (on_line((i as f64 + 1.0) / (bends as f64 + 1.0)), if i % 2 == 0 { 1.0 } else { -1.0 });
+            let (at, side) =
+                (on_line((i as f64 + 1.0) / (bends as f64 + 1.0)), if i.is_multiple_of(2) { 1.0 } else { -1.0 });
             std::array::from_fn(|k| at[k] + side * across[k])
         };
         Self::new(std::iter::once(from).chain((0..bends).map(bend)).chain([to]).collect(), colour)

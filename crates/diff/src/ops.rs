@@ -156,8 +156,8 @@ impl Binary {
 #[inline(always)]
 fn product<F: Float>(g: F, slope: F, product: F) -> F {
     // What is finite keeps its bits, the sign of a zero among them.
-    let flat = (slope == F::ZERO) & (product != F::ZERO);
-    unread(g, select(flat, F::ZERO, product))
+    let flat = select(product == F::ZERO, product, F::ZERO);
+    unread(g, select(slope == F::ZERO, flat, product))
 }
 
 /// A product with `g`, whose other factor may be no number where `g` is zero.

@@ -93,7 +93,7 @@ impl Looks {
             for (i, of) in self.groups().enumerate() {
                 let lower = upper + self.design[of].iter().sum::<f64>() / total.max(f64::MIN_POSITIVE);
                 let ends = [upper, lower].map(|share| y1 + share * (y2 - y1));
-                solids.push(segment(ends, if i % 2 == 0 { DESIGN } else { DESIGN_TOO }));
+                solids.push(segment(ends, if i.is_multiple_of(2) { DESIGN } else { DESIGN_TOO }));
                 upper = lower;
             }
             cords.push(hung(0.0, 0.3 * wide, MARK));

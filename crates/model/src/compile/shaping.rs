@@ -10,6 +10,7 @@ use crate::anatomy::measured;
 use crate::columns::Column;
 use crate::names::{OwnName, Place};
 use crate::parameter::name_fault;
+use crate::reference::TIME_STEP;
 use crate::texts::tell_at;
 
 impl Compiler<'_, '_> {
@@ -169,7 +170,7 @@ impl Compiler<'_, '_> {
             let refusal = if found.fields.contains(&field) {
                 Some("this field is set twice")
             } else {
-                (field.to_string() == "option.timestep").then_some("the time step is that of the model's file")
+                (field.to_string() == TIME_STEP).then_some("the time step is that of the model's file")
             };
             if let Some(why) = refusal {
                 tell_at(self.section, &keys, &(0..at), why, None);

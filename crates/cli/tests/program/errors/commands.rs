@@ -91,7 +91,6 @@ pub(super) const CASES: &[Case] = &[
     case("An error of what is not designed", Made(Sandbox::put_run), "hwasp tolerances run --error radius='0.1 mm'"),
     case("An error without a size", Made(Sandbox::put_run), "hwasp tolerances run --error gear"),
     case("An error of nothing", Made(Sandbox::put_run), "hwasp tolerances run --error gear=0"),
-    case("Films of what does not show itself", Made(Sandbox::put_run), "hwasp play run"),
     case("A fast law of what has none", Made(Sandbox::put_run), "hwasp eval run --law-rate physics"),
     case("Tendons of what has none", Made(Sandbox::put_run), "hwasp eval run --native-tendons"),
     case("A design of nothing", Nothing, "hwasp design nosuch"),

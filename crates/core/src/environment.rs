@@ -48,6 +48,7 @@ pub(crate) mod shared_text {
     pub(crate) mod option {
         use super::{Arc, Deserialize, Deserializer, Serialize, Serializer};
 
+        #[allow(clippy::ref_option)] // as serde calls it
         pub(crate) fn serialize<S: Serializer>(text: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
             text.as_deref().serialize(serializer)
         }

@@ -46,8 +46,8 @@ fn a_robot_is_judged_by_other_terms_and_ends() {
     let output = sandbox.run(&format!("train hopper --env-steps 800 {short} --quiet --out run"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let eval = |set: &[&str]| -> serde_json::Value {
-        let set: String = set.iter().map(|set| format!(" --set {set}")).collect();
-        let output = sandbox.run(&format!("eval run --episodes 4 --json{set}"));
+        let line = set.iter().fold("eval run --episodes 4 --json".to_owned(), |line, set| line + " --set " + set);
+        let output = sandbox.run(&line);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     };

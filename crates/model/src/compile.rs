@@ -11,7 +11,7 @@ use crate::anatomy::Anatomy;
 use crate::columns::{Column, Stage};
 use crate::corners::check_corners;
 use crate::names::{InPlace, Names, Place};
-use crate::robot::{Additions, Ends, Formula, Outputs, Robot, Shaping};
+use crate::robot::{Additions, Formula, Outputs, Robot, Shaping};
 use crate::settings::{Base, ModelSettings, Readings};
 use crate::texts::{node_at, tell, tell_at};
 

@@ -245,8 +245,7 @@ fn ends_have_names() {
                 [task.start]\n\"joint.slide.pos\" = \"0.05\"\n";
     let first = experiment(text);
     let written = first.to_toml().unwrap();
-    let layers = Layers::from_text("e.toml", &written).unwrap().with_folder(Folder::Sent(Arc::clone(first.files())));
-    assert_eq!(resolve(layers, None, catalogue()).unwrap(), first);
+    assert_eq!(from(&written, first.files(), None).unwrap(), first);
     let mut robot = robot(text);
     begin(&mut *robot, 0);
     assert_eq!(robot.step(&[], &[0.0, 0.0]).end, Some(End::Terminated));

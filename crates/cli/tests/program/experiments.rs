@@ -43,7 +43,7 @@ fn a_sound_robot() {
 fn what_would_not_train_is_warned_of() {
     let sandbox = Sandbox::new("check-doubts");
     let over = sandbox.transcript(&["check hopper --set task.ends=time>0.01"]);
-    assert!(over.contains("8 of 8 episodes ended within 3 steps, the first by `time>0.01` of task.ends"), "{over}");
+    assert!(over.contains("8 of 8 episodes ended within 3 steps"), "{over}");
     let shakes = sandbox.transcript(&["check five-bar --set task.frame_skip=10"]);
     assert!(shakes.contains("warning     the law's spring on joint.front_hip has 7.500 N*m/rad"), "{shakes}");
     let sound = sandbox.transcript(&["check five-bar", "check hopper"]);

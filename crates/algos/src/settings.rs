@@ -186,6 +186,7 @@ impl Settings for CmaesConfig {
         fields.default("cmaes: 0.5, cmaes-rl: 0.25");
         fields.number("sigma", &mut self.sigma, 1e-9..=1e3, about);
         fields.flag("active", &mut self.active, "whether bad candidates shrink the covariance");
+        fields.default("false; of `cmaes` with more than 5000 parameters true");
         fields.flag("separable", &mut self.separable, "a diagonal covariance, for very many parameters");
         let mut restarts = self.restarts as usize;
         fields.count("restarts", &mut restarts, 0..=20, "restarts with twice the candidates where it stagnates");

@@ -132,6 +132,13 @@ pub(crate) fn evaluation(evaluation: &Evaluation, per_kind: bool, nearer: Option
     for (term, mean) in &evaluation.terms {
         let _ = writeln!(text, "    {term:<18} {mean:>10.2}");
     }
+    if let Some(ends) = &evaluation.ends {
+        let _ = writeln!(
+            text,
+            "  {:<20} {:>10.2}   steps ({:.2} s); {ends}",
+            "episode length", ends.mean_steps, ends.mean_s
+        );
+    }
     // The first is over all episodes.
     let shown = if per_kind { evaluation.success.len() } else { 1 };
     for rate in evaluation.success.iter().take(shown) {
@@ -173,7 +180,9 @@ pub(crate) fn exported(spec: &Experiment, out: &Path, files: &[ExportFile], left
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwasp_training::SuccessRate;
+    use std::collections::BTreeMap;
+
+    use hwasp_training::{Ends, SuccessRate};
 
     /// An evaluation whose success was counted by these kinds.
     fn counted(kinds: &[&str]) -> Evaluation {
@@ -187,6 +196,7 @@ mod tests {
             median_discounted_return: 1.0,
             worst_discounted_return: 0.0,
             discarded_episodes: 0,
+            ends: None,
             success: kinds.iter().map(rate).collect(),
             terms: [].into(),
         }
@@ -209,6 +219,22 @@ mod tests {
         let gear = counted(&[]);
         assert_eq!(evaluation(&gear, false, None), evaluation(&gear, true, None));
         assert_eq!(evaluation(&gear, true, None).lines().count(), 3);
+    }
+
+    /// Nothing told how long episodes are, nor why they end: a hopper that falls at once looked like one that hops.
+    #[test]
+    fn episodes_are_told_with_their_length_and_their_ends() {
+        let ends = |time_limit, named: &[(&str, u64)]| {
+            let named: BTreeMap<String, u64> = named.iter().map(|&(name, n)| (name.to_owned(), n)).collect();
+            let ends = Ends { mean_steps: 412.5, mean_s: 3.3, time_limit, before: 4 - time_limit, named };
+            let text = evaluation(&Evaluation { ends: Some(ends), ..counted(&[]) }, false, None);
+            text.lines().last().map(str::to_owned).unwrap_or_default()
+        };
+        let line = "  episode length           412.50   steps (3.30 s); ";
+        assert_eq!(ends(4, &[]), format!("{line}all ran to the time limit"));
+        let some = "1 of 4 ran to the time limit, 3 ended before it (fallen 2, tilted 1)";
+        assert_eq!(ends(1, &[("fallen", 2), ("tilted", 1)]), format!("{line}{some}"));
+        assert_eq!(ends(0, &[]), format!("{line}all ended before the time limit"));
     }
 
     #[test]

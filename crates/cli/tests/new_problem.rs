@@ -227,9 +227,12 @@ fn main() -> ExitCode {
 }
 
 fn every_command_works(folder: &Path) {
-    let hwasp = |line: &str| {
+    let run = |line: &str| {
         let mut program = Command::new(std::env::current_exe().unwrap());
-        let output = program.args(line.split(' ')).current_dir(folder).env(PROGRAM, "1").output().unwrap();
+        program.args(line.split(' ')).current_dir(folder).env(PROGRAM, "1").output().unwrap()
+    };
+    let hwasp = |line: &str| {
+        let output = run(line);
         let (told, wrong) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
         assert!(output.status.success(), "{line}: {wrong}");
         told
@@ -254,6 +257,11 @@ fn every_command_works(folder: &Path) {
     hwasp("report run --out run.html");
     let page = fs::read_to_string(folder.join("run.html")).unwrap();
     assert!(page.contains("A winch pulls a sled along a rail."));
+    // Its task does not say how it looks.
+    let refused = run("play run");
+    let told = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(2) && told.contains("nothing is to be seen of winch"), "{told}");
+    assert!(!folder.join("run/play").exists());
     hwasp("export run --out export");
     has(&["export/policy.onnx", "export/controller.safetensors", "export/contract.json"]);
     let contract = fs::read_to_string(folder.join("export/contract.json")).unwrap();

@@ -31,10 +31,10 @@ pub struct Outcome {
 }
 
 /// A shared text, for serde: whoever reads it has one of its own.
-mod shared_text {
+pub(crate) mod shared_text {
     use std::sync::Arc;
 
-    use serde::{Deserialize, Deserializer, Serializer};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub(super) fn serialize<S: Serializer>(text: &Arc<str>, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(text)
@@ -42,6 +42,20 @@ mod shared_text {
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<str>, D::Error> {
         String::deserialize(deserializer).map(Arc::from)
+    }
+
+    /// The same of one that need not be there.
+    pub(crate) mod option {
+        use super::{Arc, Deserialize, Deserializer, Serialize, Serializer};
+
+        #[allow(clippy::ref_option)] // as serde calls it
+        pub(crate) fn serialize<S: Serializer>(text: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
+            text.as_deref().serialize(serializer)
+        }
+
+        pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Arc<str>>, D::Error> {
+            Ok(Option::<String>::deserialize(deserializer)?.map(Arc::from))
+        }
     }
 }
 
@@ -161,6 +175,11 @@ pub trait Task: Send {
         false
     }
 
+    /// The name of what [`terminated`](Self::terminated) the episode, for tasks with several ways to end.
+    fn ended_by(&self) -> Option<Arc<str>> {
+        None
+    }
+
     /// Whether the episode so far is a success, for tasks that know.
     fn outcome(&self) -> Option<Outcome> {
         None
@@ -203,6 +222,11 @@ pub trait Environment: Send {
     /// What each named term of the reward came to so far in the episode ([`EnvSpec::terms`]): their sum is the return.
     fn terms(&self) -> &[f64] {
         &[]
+    }
+
+    /// The name of what ended the episode, after a step that [terminated](End::Terminated) it; none where nobody named it.
+    fn ended_by(&self) -> Option<Arc<str>> {
+        None
     }
 
     /// Whether the episode so far is a success, for tasks that know.
@@ -306,6 +330,10 @@ impl<T: Task> Environment for Robot<T> {
 
     fn terms(&self) -> &[f64] {
         self.task.terms()
+    }
+
+    fn ended_by(&self) -> Option<Arc<str>> {
+        self.task.ended_by()
     }
 
     fn outcome(&self) -> Option<Outcome> {

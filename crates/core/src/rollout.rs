@@ -5,11 +5,12 @@ mod lanes;
 mod sampler;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::environment::{End, Outcome};
+use crate::environment::{End, Outcome, shared_text};
 
 pub use batch::{Batch, Episode};
 pub use sampler::{Sampler, all_failed};
@@ -50,6 +51,9 @@ pub struct EpisodeResult {
     pub steps: usize,
     /// How it ended.
     pub end: End,
+    /// The name of what ended it, where it [terminated](End::Terminated) and the task has one.
+    #[serde(default, with = "shared_text::option")]
+    pub ended_by: Option<Arc<str>>,
     /// Whether it succeeded, for tasks that know.
     pub outcome: Option<Outcome>,
     /// What each named term of the reward came to, where it has some.

@@ -1,5 +1,7 @@
 //! Environments that somebody watches, or changes.
 
+use std::sync::Arc;
+
 use crate::environment::{EnvSpec, Environment, Outcome, Step};
 use crate::sight::Sight;
 use crate::streams::Stream;
@@ -68,6 +70,10 @@ impl<W: Watch> Environment for Watched<W> {
 
     fn terms(&self) -> &[f64] {
         self.inner.terms()
+    }
+
+    fn ended_by(&self) -> Option<Arc<str>> {
+        self.inner.ended_by()
     }
 
     fn outcome(&self) -> Option<Outcome> {

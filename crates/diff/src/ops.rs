@@ -75,23 +75,32 @@ impl Unary {
     }
 
     /// `g` times the derivative at `a`, where the value is `v`. Being a plain product it serves both directions: a
-    /// cotangent is pulled back with it and a tangent pushed forward. A `g` of zero gives zero, whatever the derivative is:
-    /// what nobody reads may be no number.
+    /// cotangent is pulled back with it and a tangent pushed forward. Where one factor is zero so is the product, whatever the
+    /// other one is: what nobody reads may be no number, and what changes nothing may change at any rate.
     #[inline(always)]
     pub(crate) fn pull<F: Float>(self, g: F, a: F, v: F) -> F {
         match self {
             Self::Neg => -g,
-            Self::Exp => unread(g, g * v),
+            Self::Exp => product(g, v, g * v),
             Self::Ln => unread(g, g / a),
             Self::Sqrt => unread(g, g * F::from_f64(0.5) / v),
             Self::Sin => unread(g, g * a.cos()),
-            Self::Cos => unread(g, -g * a.sin()),
-            Self::Tanh => unread(g, g * (F::ONE - v * v)),
+            Self::Cos => {
+                let sin = a.sin();
+                product(g, sin, -g * sin)
+            }
+            Self::Tanh => {
+                let slope = F::ONE - v * v;
+                product(g, slope, g * slope)
+            }
             Self::Abs => {
                 let signed = if a < F::ZERO { -g } else { g };
                 if a == F::ZERO { F::ZERO } else { signed }
             }
-            Self::Sigmoid => unread(g, g * (v * (F::ONE - v))),
+            Self::Sigmoid => {
+                let slope = v * (F::ONE - v);
+                product(g, slope, g * slope)
+            }
             Self::Atan => unread(g, g / (F::ONE + a * a)),
         }
     }
@@ -119,7 +128,7 @@ impl Binary {
     pub(crate) fn pull_a<F: Float>(self, g: F, a: F, b: F, _v: F) -> F {
         match self {
             Self::Add | Self::Sub => g,
-            Self::Mul => unread(g, g * b),
+            Self::Mul => product(g, b, g * b),
             Self::Div => unread(g, g / b),
             Self::Min => select(b < a, F::ZERO, g),
             Self::Max => select(b > a, F::ZERO, g),
@@ -133,14 +142,22 @@ impl Binary {
         match self {
             Self::Add => g,
             Self::Sub => -g,
-            Self::Mul => unread(g, g * a),
-            Self::Div => unread(g, -(g * v / b)),
+            Self::Mul => product(g, a, g * a),
+            Self::Div => product(g, v, -(g * v / b)),
             Self::Min => select(b < a, g, F::ZERO),
             Self::Max => select(b > a, g, F::ZERO),
             Self::Less => F::ZERO,
             Self::Gate => select(a == F::ZERO, F::ZERO, g),
         }
     }
+}
+
+/// A product of `g` and a `slope`: zero where the slope is zero and `g` is infinite or no number, and as [`unread`] has it.
+#[inline(always)]
+fn product<F: Float>(g: F, slope: F, product: F) -> F {
+    // What is finite keeps its bits, the sign of a zero among them.
+    let flat = select(product == F::ZERO, product, F::ZERO);
+    unread(g, select(slope == F::ZERO, flat, product))
 }
 
 /// A product with `g`, whose other factor may be no number where `g` is zero.

@@ -76,7 +76,7 @@ impl Settings for DesignSettings {
             self.initial = InitialDesign::Logit;
         }
         let about = "`law` (as the problem's law says; of those that come with the program `logit`), `logit`, `middle`, a quantity, or \
-                     one for each group, `{ thumb_distal_radius = \"6 mm\" }`; groups left out begin in the middle";
+                     one for each group, `{ thumb_distal_radius = \"6 mm\" }`; those left out begin where the problem says (`initial` in `[task.design]` of a robot), else in the middle";
         fields
             .default("\"law\", or \"logit\" where `logit_half_width` is set")
             .limits("inside of the parameter's limits")

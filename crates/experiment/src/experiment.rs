@@ -12,7 +12,7 @@ use crate::design::DesignSettings;
 use crate::learner::LearnerSettings;
 use crate::method::Method;
 use crate::noise::NoiseSettings;
-use crate::search::SearchSettings;
+use crate::search::{MOST_CORRELATED, SearchSettings};
 use crate::task::Task;
 use crate::train::TrainSettings;
 
@@ -195,12 +195,16 @@ fn read_experiment<'r>(
     let baseline = read_baseline(&learner, &train, sound, baseline);
     let search = read_table(SearchSettings::new(&train, sound), search);
     let sigma = if method == Method::CmaesRl { 0.25 } else { 0.5 };
-    let cmaes = read_table(CmaesConfig { sigma, ..CmaesConfig::default() }, cmaes);
+    let cmaes = |separable| read_table(CmaesConfig { sigma, separable, ..CmaesConfig::default() }, cmaes);
     let ars = read_table(ArsSettings::new(method == Method::ArsRl), ars);
     // The rest cannot be judged without a task.
-    let task = task?;
+    let Some(task) = task else {
+        cmaes(false);
+        return None;
+    };
     let searched_by = (method.searches() && !method.trains_inside()).then(|| method.name());
     let controller = read_table(ControllerSettings::new(task.observations(), searched_by), controller);
+    let cmaes = cmaes(method == Method::Cmaes && most_parameters(&controller, &task) > MOST_CORRELATED);
     let design = read_table(DesignSettings::new(method, task.groups()), design);
     let noise = read_table(NoiseSettings::new(&task, &design), noise);
     Some(Experiment {
@@ -220,6 +224,16 @@ fn read_experiment<'r>(
         train,
         catalogue: catalogue.clone(),
     })
+}
+
+/// The most parameters that a policy may have: those of the controller, of the design, and of the noise.
+fn most_parameters(controller: &ControllerSettings, task: &Task) -> usize {
+    let design: usize = task.groups().iter().map(|group| group.count).sum();
+    let (commands, efforts) = (task.commands(), task.efforts().len());
+    let sees = task.observations() + if controller.sees_design { design } else { 0 };
+    let widths = controller.hidden.iter().chain([&commands]);
+    let layers = widths.scan(sees, |inputs, &outputs| Some((std::mem::replace(inputs, outputs) + 1) * outputs));
+    layers.sum::<usize>() + design + (design + efforts + commands)
 }
 
 /// What stands at the top: name, description, method and seed.

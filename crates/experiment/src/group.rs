@@ -32,6 +32,8 @@ pub struct Group {
     pub lo: f64,
     /// Upper limit of each, SI.
     pub hi: f64,
+    /// Where the problem's law lets each begin, SI, where it says so.
+    pub initial: Option<f64>,
     /// Whether the world's model is made from it, so that it stays as it is during an episode.
     pub shapes_world: bool,
 }

@@ -15,7 +15,7 @@ pub enum InitialDesign {
     Logit,
     /// In the middle of their limits.
     Middle,
-    /// The parameters of these groups at these values, others in the middle of their limits.
+    /// The parameters of these groups at these values, others where the law says, if it names a value, or in the middle.
     Values(Vec<InitialValue>),
 }
 
@@ -54,7 +54,8 @@ impl InitialDesign {
                 Self::Middle => Some(middle),
                 Self::Values(values) => {
                     let found = values.iter().find(|value| value.group == group.name);
-                    Some(found.map_or(middle, |value| Initial::Value(value.value)))
+                    let left_out = group.initial.map_or(middle, Initial::Value);
+                    Some(found.map_or(left_out, |value| Initial::Value(value.value)))
                 }
             }
         };

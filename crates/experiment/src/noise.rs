@@ -80,7 +80,7 @@ impl NoiseSettings {
         let about = "of the efforts, where a parameter sits in the graph: one for all, a list of one each, or by name, `{ knee = \"0.5 \
                      N·m\", spring = \"3 N\" }`, where those left out keep their default";
         fields
-            .default("\"3 N\"; a torque: \"0.5 N·m\", else 0.1 in SI; grasps: \"0.02 N·m\"")
+            .default("\"3 N\"; a torque: \"0.5 N·m\", else 0.1 in SI; grasps: \"0.02 N·m\"; model: 0.15 of what the commands move it by")
             .limits("1e-6 to 1e4")
             .kind(kind())
             .open("effort", about, written, |section, node| {

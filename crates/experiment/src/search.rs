@@ -4,6 +4,9 @@ use hwasp_settings::{Fields, Settings, choice};
 
 use crate::train::TrainSettings;
 
+/// The most parameters of a full covariance of CMA-ES: its matrices take 1 GB then, and each decomposition seconds.
+pub const MOST_CORRELATED: usize = 5000;
+
 choice! {
     /// What a candidate is scored by.
     pub enum Score {

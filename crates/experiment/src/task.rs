@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use hwasp_core::Port;
+use hwasp_core::{Initial, Port};
 use hwasp_problem::{AnyProblem, Built, FaultsTold};
 use hwasp_settings::{AnySettings, Item, Keys, Section, described, either, listed, read, written};
 
@@ -57,10 +57,11 @@ impl Task {
         let mut first = 0;
         let shaped_by = &self.built.training.env.shaped_by;
         let groups = self.built.training.law.design().groups().iter().map(|group| {
-            let &hwasp_core::DesignGroup { dimension, count, lo, hi, .. } = group;
+            let &hwasp_core::DesignGroup { dimension, count, lo, hi, initial, .. } = group;
+            let initial = if let Initial::Value(value) = initial { Some(value) } else { None };
             first += count;
             let shapes_world = shaped_by.contains(&group.name);
-            Group { name: group.name.clone(), first: first - count, dimension, count, lo, hi, shapes_world }
+            Group { name: group.name.clone(), first: first - count, dimension, count, lo, hi, initial, shapes_world }
         });
         groups.collect()
     }

@@ -111,31 +111,21 @@ impl Checker<'_> {
 
     fn check_body(&mut self, function: &Function, tree: &Tree) -> Result<(), ExprError> {
         self.deeper(tree)?;
-        let within: &[Tree] = match &tree.node {
-            Node::Number(..) => &[],
+        match &tree.node {
             Node::Name(path) => {
                 let parameter = |name: &str| function.signature.parameters.iter().any(|known| known.name == name);
                 if path.quoted[0] || !parameter(path.first()) {
                     self.name(path, &tree.span)?;
                 }
-                &[]
             }
-            Node::Call(name, trees) => {
-                match (FUNCTIONS.iter().find(|known| known.name == name), self.function(name)) {
-                    (Some(known), _) => known.count_arguments(trees.len(), &tree.span)?,
-                    (None, Some((called, _))) => count_arguments(&called, trees, &tree.span)?,
-                    (None, None) => return Err(self.no_function(name, &tree.span)),
-                }
-                trees
-            }
-            Node::List(items) => items,
-            Node::Minus(inner) | Node::Not(inner) | Node::Slice(inner, _) => std::slice::from_ref(inner),
-            Node::Binary(_, left, right) => {
-                self.check_body(function, left)?;
-                std::slice::from_ref(right)
-            }
-        };
-        for tree in within {
+            Node::Call(name, trees) => match (FUNCTIONS.iter().find(|known| known.name == name), self.function(name)) {
+                (Some(known), _) => known.count_arguments(trees.len(), &tree.span)?,
+                (None, Some((called, _))) => count_arguments(&called, trees, &tree.span)?,
+                (None, None) => return Err(self.no_function(name, &tree.span)),
+            },
+            _ => {}
+        }
+        for tree in tree.node.within() {
             self.check_body(function, tree)?;
         }
         self.depth -= 1;

@@ -214,6 +214,9 @@ impl Parser<'_> {
                 Err(self.unexpected("a value should be"))
             }
             Token::Word(_) => self.name(),
+            Token::Sign(".") if self.at > 1 && matches!(self.tokens[self.at - 1].token, Token::Sign("*")) => {
+                Err(part_of_names(self.tokens[self.at - 2].span.start..span.start))
+            }
             Token::Sign(_) | Token::Index(_) => Err(self.unexpected("a value should be")),
         }
     }
@@ -255,6 +258,10 @@ impl Parser<'_> {
         }
         let opened = self.span();
         let end = self.tokens[self.at - 1].span.end;
+        if path.word(path.len() - 1) == Some("*") && matches!(self.peek(), Some(Token::Word(_))) && opened.start == end
+        {
+            return Err(part_of_names(path.spans[path.len() - 1].start..opened.end));
+        }
         if path.len() == 1 && !path.quoted[0] && self.take("(") {
             let arguments = self.items(")", &opened)?;
             let span = start.start..self.tokens[self.at - 1].span.end;
@@ -289,6 +296,12 @@ impl Parser<'_> {
             _ => Ok(None),
         }
     }
+}
+
+/// Of a `*` that stands for a part of names, as in other languages.
+fn part_of_names(span: Range<usize>) -> ExprError {
+    ExprError::new(span, "`*` stands for all elements of a kind, and for no part of their names")
+        .hint("name those that are meant, [joint.left.pos, joint.lift.pos], or take all, joint.*.pos")
 }
 
 /// The index of a component by its letter.

@@ -143,6 +143,18 @@ pub(crate) enum Node {
     List(Vec<Tree>),
 }
 
+impl Node {
+    /// What it is made of, in the order of the text.
+    pub(crate) fn within(&self) -> Vec<&Tree> {
+        match self {
+            Self::Number(..) | Self::Name(_) => Vec::new(),
+            Self::Call(_, trees) | Self::List(trees) => trees.iter().collect(),
+            Self::Minus(inner) | Self::Not(inner) | Self::Slice(inner, _) => vec![inner],
+            Self::Binary(_, left, right) => vec![left, right],
+        }
+    }
+}
+
 /// What stands in brackets behind a vector. Negative numbers count from the end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Index {

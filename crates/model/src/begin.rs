@@ -1,5 +1,6 @@
 //! An experiment for a model of one's own, as a text that trains at once: what `hwasp init` writes.
 
+mod close;
 mod facts;
 mod listing;
 mod purpose;

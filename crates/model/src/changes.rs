@@ -5,7 +5,7 @@ use hwasp_problem::{AnyError, Changed};
 
 use crate::anatomy::Anatomy;
 use crate::body::Body;
-use crate::robot::{Formula, Robot};
+use crate::robot::Robot;
 
 /// The smallest change that is told, as a share.
 const LEAST: f64 = 1e-9;
@@ -37,7 +37,7 @@ fn numbers(robot: &Robot, design: &[f64]) -> Result<(Vec<Number>, Vec<Number>), 
     let mut values = crate::corners::columns(robot, design, 0.0, 1.0);
     let mut set = Vec::new();
     if let Some(shaping) = &robot.shaping {
-        for (field, value) in shaping.fields.iter().zip(run(&shaping.formula, design, &values)) {
+        for (field, value) in shaping.fields.iter().zip(shaping.formula.run(design, &values)) {
             making.set(field, value)?;
             set.push((field.to_string(), making.quantity(field)?.unit(), value));
         }
@@ -45,13 +45,7 @@ fn numbers(robot: &Robot, design: &[f64]) -> Result<(Vec<Number>, Vec<Number>), 
     let simulation = making.compile()?;
     let (anatomy, has) = (Anatomy::of(&simulation), simulation.inventory());
     let mut body = Body::new(simulation, &robot.columns);
-    body.reset(robot.keyframe.as_deref())?;
-    body.refresh(true)?;
-    if let Some((formula, targets)) = &robot.start {
-        body.read(&mut values);
-        body.write(targets, &run(formula, design, &values))?;
-        body.refresh(true)?;
-    }
+    crate::corners::start(robot, &mut body, design, &mut values)?;
     Ok((set, following(&body, &anatomy, &has)))
 }
 
@@ -78,12 +72,4 @@ fn following(body: &Body, anatomy: &Anatomy, has: &Inventory) -> Vec<Number> {
     let centre = simulation.subtree_center(has.bodies[0].id);
     numbers.push(("height of the centre of mass at the start".to_owned(), "m", centre[2]));
     numbers
-}
-
-fn run(formula: &Formula, design: &[f64], values: &[f64]) -> Vec<f64> {
-    let mut tape = formula.program.tape::<f64>(1);
-    let mut out = vec![0.0; formula.program.output_names().len()];
-    formula.program.bind(design, &mut tape);
-    formula.program.forward(values, 1, 1, &mut tape, &mut out, 1);
-    out
 }

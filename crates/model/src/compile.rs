@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, Mutex};
 
-use hwasp_expr::{Formulas, Part, Quantity, Value};
-use hwasp_mujoco::engine::{Files, Simulation, Spec};
+use hwasp_expr::{ExprError, Formulas, Part, Quantity, Value};
+use hwasp_mujoco::engine::{Files, JointEntry, JointType, Simulation, Spec};
+use hwasp_settings::text::printable;
 use hwasp_settings::{Section, listed, nearest};
 
 use crate::anatomy::Anatomy;
@@ -11,9 +12,11 @@ use crate::columns::{Column, Stage};
 use crate::corners::check_corners;
 use crate::names::{InPlace, Names, Place};
 use crate::robot::{Additions, Formula, Outputs, Robot, Shaping};
-use crate::settings::{ModelSettings, Readings};
+use crate::settings::{Base, ModelSettings, Readings};
 use crate::texts::{node_at, tell, tell_at};
 
+/// Places of an experiment that may read the design.
+const PLACES: [&str; 5] = ["the law", "the start", "the observation", "reward and end", "draws and forces"];
 /// Steps of an episode where an experiment says nothing.
 const HORIZON: usize = 1000;
 /// The most columns that a law's states and an observation have.
@@ -23,6 +26,7 @@ mod define;
 mod episode;
 mod ports;
 mod shaping;
+mod watched;
 
 use self::episode::Watched;
 
@@ -34,7 +38,12 @@ pub(super) struct Compiler<'c, 'r> {
     names: Names,
     /// Keys of `[task.define]` that were read.
     defined: Vec<String>,
+    /// Whether there can be a robot.
     sound: bool,
+    /// Whether a fault was told without which there could be one.
+    flawed: bool,
+    /// Faults of what names a definition that may be in order later: its keys, where its formula begins, and the definition.
+    waiting: Vec<(Vec<String>, usize, ExprError, String)>,
 }
 
 impl Robot {
@@ -52,7 +61,7 @@ impl Robot {
         };
         let additions = Additions {
             floor: settings.floor,
-            free_base: settings.base == crate::settings::Base::Free,
+            free_base: settings.base == Base::Free,
             motors: settings
                 .motors
                 .iter()
@@ -86,11 +95,28 @@ impl Robot {
                 return None;
             }
         };
+        if settings.base == Base::Fixed
+            && let Some(joint) = freed(&simulation)
+        {
+            let hint = "leave base out, and it goes as the model says; or take the joint out of the model's file";
+            let message = format!("\"fixed\" does not hold what {joint} of the model frees");
+            tell_at(section, &["base"], &(0.."fixed".len()), &message, Some(hint.to_owned()));
+            return None;
+        }
         let anatomy = Anatomy::of(&simulation);
         let time_step = anatomy.timestep * settings.frame_skip as f64;
         let names = Names { anatomy, time_step, ..Names::default() };
         let formulas = Formulas::default();
-        let mut compiler = Compiler { settings, section, formulas, names, defined: Vec::new(), sound: true };
+        let mut compiler = Compiler {
+            settings,
+            section,
+            formulas,
+            names,
+            defined: Vec::new(),
+            sound: true,
+            flawed: false,
+            waiting: Vec::new(),
+        };
         compiler.robot(main, files, additions, simulation, &spec)
     }
 }
@@ -105,6 +131,7 @@ impl Compiler<'_, '_> {
         spec: &Spec,
     ) -> Option<Robot> {
         let settings = self.settings;
+        self.unread();
         let space = self.design()?;
         let uniforms = space.names();
         // Those that need nothing that is drawn, nor commands: what is drawn may follow them.
@@ -131,29 +158,24 @@ impl Compiler<'_, '_> {
         let numbered = |parts: &[Part]| parts.iter().enumerate().map(|(i, &part)| (format!("y{i}"), part)).collect();
         let law_reads = self.commands_of(&law);
         let watched: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
-        let purpose: Vec<Part> = terms.iter().map(|(_, part)| *part).chain(ends).chain(success).collect();
+        let purpose: Vec<Part> = terms.iter().chain(&ends).map(|(_, part)| *part).chain(success).collect();
         let around: Vec<Part> =
             forces.iter().flat_map(|(parts, _)| parts).chain(random.iter().flatten()).copied().collect();
-        let places = [
-            (&law[..], "the law"),
-            (start.as_ref().map_or(&[][..], |(parts, _)| parts), "the start"),
-            (&watched, "the observation"),
-            (&purpose, "reward and end"),
-            (&around, "draws and forces"),
-        ];
+        let begun = start.as_ref().map_or(&[][..], |(parts, _)| parts);
+        let places = [&law[..], begun, &watched, &purpose, &around].into_iter().zip(PLACES).collect::<Vec<_>>();
         let uses = self.uses(uniforms.len(), shaping.as_ref(), &places);
+        let shaped = shaping.as_ref().map_or(&[][..], |found| &found.parts);
+        let tried = self.parameters_of(&[begun, delays.as_deref().unwrap_or_default(), shaped].concat());
         let (law, states) = self.traced_law(&space, &law)?;
         let shaping = shaping.map(|found| Shaping {
             formula: formula(self, None, numbered(&found.parts)),
             fields: found.fields,
             parameters: found.parameters,
         });
-        let mut outputs: Vec<Part> = observed.iter().flat_map(|(_, value)| value.parts.clone()).collect();
-        let observations = outputs.len();
-        outputs.extend(terms.iter().map(|(_, part)| *part));
-        outputs.extend(ends.into_iter().chain(success));
+        let (mut outputs, observations) = (watched.clone(), watched.len());
+        outputs.extend(terms.iter().chain(&ends).map(|(_, part)| *part).chain(success));
         outputs.extend(&kinds);
-        let memory: Vec<Part> = self.names.memory.clone();
+        let memory = self.names.memory.clone();
         outputs.extend(&memory);
         let place = |column: Column| self.names.columns.all().iter().position(|&known| known == column);
         let memory_columns: Vec<usize> = (0..memory.len()).filter_map(|i| place(Column::Memory(i))).collect();
@@ -167,8 +189,9 @@ impl Compiler<'_, '_> {
         let mut env = self.env(&observed, &law);
         // What only the law reads is not sampled where the law's efforts are.
         let by_task = self.commands_of(&outputs);
-        let of_law = |i: usize| direct[i].is_none() && law_reads.contains(&i) && !by_task.contains(&i);
-        env.command.iter_mut().enumerate().for_each(|(i, port)| port.direct = !of_law(i));
+        for i in law_reads.into_iter().filter(|&i| direct[i].is_none() && !by_task.contains(&i)) {
+            env.command[i].direct = false;
+        }
         let groups = shaping.iter().flat_map(|shaping: &Shaping| &shaping.parameters);
         env.shaped_by = groups.map(|&i| uniforms[i].clone()).collect();
         env.terms = terms.iter().map(|(name, _)| name.clone()).collect();
@@ -189,11 +212,12 @@ impl Compiler<'_, '_> {
             outputs: Outputs {
                 observations,
                 terms: terms.len(),
-                ends: ends.is_some(),
+                ends: ends.len(),
                 success: success.is_some(),
                 kinds: kinds.len(),
                 memory: memory.len(),
             },
+            ends: ends.iter().map(|(name, _)| Arc::from(name.as_str())).collect(),
             kinds: kind_names(settings),
             forces: forces.map(|(parts, bodies)| (formula(self, Some(Stage::Force), numbered(&parts)), bodies)),
             delays: delays.map(|parts| formula(self, None, numbered(&parts))),
@@ -207,20 +231,20 @@ impl Compiler<'_, '_> {
             simulation: Mutex::new(simulation),
         };
         robot.discard_visual();
-        self.at_corners(robot)
+        self.at_corners(robot, &tried)
     }
 
-    /// The robot, where its model can be made at the corners of the design.
-    fn at_corners(&mut self, robot: Robot) -> Option<Robot> {
-        match check_corners(&robot) {
-            Ok(()) => Some(robot),
-            Err(message) => {
-                let hint = "narrow the limits, or mend the formulas that set fields of the model";
-                let key = if self.settings.design.is_empty() { "set" } else { "design" };
-                self.refuse(&[key], message, Some(hint.into()));
-                None
-            }
-        }
+    /// The robot, where it can be made and can start at the corners of the design.
+    fn at_corners(&mut self, robot: Robot, parameters: &[usize]) -> Option<Robot> {
+        let Err(fault) = check_corners(&robot, parameters) else { return (!self.flawed).then_some(robot) };
+        let key = match fault.key {
+            "design" if self.settings.design.is_empty() => "set",
+            "start" if self.settings.start.is_empty() && self.settings.keyframe.is_empty() => "model",
+            "start" if self.settings.start.is_empty() => "keyframe",
+            key => key,
+        };
+        self.refuse(&[key], fault.message, Some(fault.hint));
+        None
     }
 
     fn check_keyframe(&mut self) {
@@ -236,6 +260,11 @@ impl Compiler<'_, '_> {
         }
     }
 
+    /// The parameters of the design that some scalars depend on.
+    fn parameters_of(&self, parts: &[Part]) -> Vec<usize> {
+        self.formulas.inputs(parts).1
+    }
+
     /// The commands that some scalars depend on.
     fn commands_of(&self, parts: &[Part]) -> Vec<usize> {
         let command = |at: usize| match self.names.columns.all()[at] {
@@ -243,6 +272,42 @@ impl Compiler<'_, '_> {
             _ => None,
         };
         self.formulas.inputs(parts).0.into_iter().filter_map(command).collect()
+    }
+
+    /// The names of the entries of a table, whether they could be read or not.
+    fn entries(&self, table: &str) -> Vec<String> {
+        match self.section.node(table).map(|node| &node.value) {
+            Some(hwasp_settings::Value::Table(table)) => table.keys().cloned().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether a fault came of another one, which is told at its own place. Faults of what may be in order later wait.
+    fn follows(&mut self, error: &ExprError, keys: &[&str], offset: usize) -> bool {
+        let Some(name) = self.names.faulty.take() else { return false };
+        if self.names.faulty.pending.contains(&name) {
+            let keys = keys.iter().map(|key| (*key).to_owned()).collect();
+            self.waiting.push((keys, offset, error.clone(), name));
+        }
+        self.sound = false;
+        true
+    }
+
+    /// Tells what has waited for definitions that turned out to be in order, or to be wrong for no other reason.
+    fn tell_waiting(&mut self, roots: usize) {
+        for (keys, offset, error, name) in std::mem::take(&mut self.waiting) {
+            if roots == 0 || !self.names.faulty.own.contains(&name) {
+                let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+                tell(self.section, &keys, offset, &error);
+            }
+        }
+    }
+
+    /// Tells a fault without which there could be a robot, so that others are found, too.
+    fn note(&mut self, keys: &[&str], message: impl Into<String>, hint: Option<String>) {
+        let sound = self.sound;
+        self.refuse(keys, message, hint);
+        (self.sound, self.flawed) = (sound, true);
     }
 
     fn refuse(&mut self, keys: &[&str], message: impl Into<String>, hint: Option<String>) {
@@ -257,9 +322,11 @@ impl Compiler<'_, '_> {
     /// Reads a formula at the end of some keys, the first `offset` bytes of whose text are no part of it.
     fn read(&mut self, keys: &[&str], text: &str, offset: usize, place: Place, width: usize) -> Option<Value> {
         let formula = &text[offset..];
+        self.names.faulty.take();
         let mut scope = InPlace { names: &mut self.names, place, width };
         let value = match self.formulas.read(formula, &mut scope) {
             Ok(value) => value,
+            Err(error) if self.follows(&error, keys, offset) => return None,
             Err(error) => {
                 tell(self.section, keys, offset, &error);
                 self.sound = false;
@@ -294,4 +361,21 @@ impl Compiler<'_, '_> {
 fn kind_names(settings: &ModelSettings) -> Vec<Arc<str>> {
     let other = if settings.kinds.is_empty() { "all" } else { "other" };
     settings.kinds.iter().map(|(name, _)| name.as_str()).chain([other]).map(Arc::from).collect()
+}
+
+/// The joint that frees a robot's base; none where anything that moves is held to the world.
+fn freed(simulation: &Simulation) -> Option<String> {
+    let has = simulation.inventory();
+    let root = |mut body: usize| {
+        while let Some(parent) = has.bodies[body].parent.filter(|parent| parent.index() > 0) {
+            body = parent.index();
+        }
+        body
+    };
+    let free = |joint: &&JointEntry| joint.kind == JointType::Free;
+    let frees = |at: usize| has.joints.iter().filter(free).any(|joint| joint.body.index() == at);
+    let first = has.joints.iter().position(|joint| free(&joint))?;
+    let all = has.joints.iter().all(|joint| frees(root(joint.body.index())));
+    let name = has.joints[first].name.as_ref().map_or_else(|| format!("#{first}"), |name| printable(name));
+    all.then(|| format!("joint.{name}"))
 }

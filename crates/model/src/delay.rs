@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use hwasp_settings::text::show;
+
 /// Values of the last steps, the newest last.
 #[derive(Debug, Default)]
 pub(crate) struct Delay {
@@ -11,6 +13,8 @@ pub(crate) struct Delay {
 
 /// The most steps of a delay: each keeps its values.
 const MOST: f64 = 1000.0;
+/// The keys of `[task]` that say delays: of the observation, of the command.
+pub(crate) const DELAYS: [&str; 2] = ["observation_delay", "command_delay"];
 
 impl Delay {
     /// The steps of a delay in s.
@@ -19,7 +23,8 @@ impl Delay {
         if (0.0..=MOST).contains(&steps) {
             return Ok(steps as usize);
         }
-        Err(format!("a delay is {time} s: it can be 0 to {} s, {MOST} steps", MOST * time_step))
+        let most = show(MOST * time_step);
+        Err(format!("a delay is 0 to {most} s, {MOST} steps, and this is {} s", show(time)))
     }
 
     pub(crate) fn begin(&mut self, steps: usize) {

@@ -12,7 +12,7 @@ use rand_distr::StandardNormal;
 
 use crate::body::Body;
 use crate::columns::Column;
-use crate::delay::Delay;
+use crate::delay::{DELAYS, Delay};
 use crate::ready::Ready;
 use crate::robot::{Formula, Robot};
 
@@ -61,6 +61,8 @@ pub(crate) struct ModelEnvironment {
     told: Delay,
     kind: usize,
     success: bool,
+    /// Which of the robot's ends has come.
+    ended: Option<usize>,
     /// What each term of the reward came to so far.
     terms: Vec<f64>,
     fault: Option<String>,
@@ -96,6 +98,7 @@ impl ModelEnvironment {
             told: Delay::default(),
             kind: 0,
             success: false,
+            ended: None,
             terms: vec![0.0; spec.terms.len()],
             fault: None,
             view: None,
@@ -210,7 +213,7 @@ impl ModelEnvironment {
 
     fn begin(&mut self, rng: &mut Stream) -> Result<(), String> {
         self.chance = Stream::seed_from_u64(rng.random());
-        (self.taken, self.success, self.kind) = (0, false, 0);
+        (self.taken, self.success, self.kind, self.ended) = (0, false, 0, None);
         self.effort.fill(0.0);
         self.command.fill(0.0);
         self.terms.fill(0.0);
@@ -228,8 +231,9 @@ impl ModelEnvironment {
         let mut delays = [0; 2];
         if let (Some(formula), Some(ready)) = (&robot.delays, &mut self.delays) {
             ready.run(formula, &self.values);
-            for (steps, &time) in delays.iter_mut().zip(&ready.out) {
-                *steps = Delay::steps(time, self.spec.time_step)?;
+            for ((steps, &time), key) in delays.iter_mut().zip(&ready.out).zip(DELAYS) {
+                let told = |fault| format!("`{key}` of [task]: {fault}");
+                *steps = Delay::steps(time, self.spec.time_step).map_err(told)?;
             }
         }
         self.seen.begin(delays[0]);
@@ -346,9 +350,10 @@ impl Environment for ModelEnvironment {
             *sum += term;
             reward += term;
         }
-        let holds = |at: Option<usize>| at.is_some_and(|at| self.step.out[at] != 0.0);
-        self.success = holds(outputs.success_at());
-        let end = if holds(outputs.ends_at()) {
+        let holds = |at: usize| self.step.out[at] != 0.0;
+        self.success = outputs.success_at().is_some_and(holds);
+        self.ended = outputs.ends_at().position(holds);
+        let end = if self.ended.is_some() {
             Some(End::Terminated)
         } else if self.taken >= self.spec.horizon {
             Some(End::Truncated)
@@ -360,6 +365,11 @@ impl Environment for ModelEnvironment {
 
     fn terms(&self) -> &[f64] {
         &self.terms
+    }
+
+    fn ended_by(&self) -> Option<Arc<str>> {
+        let name = &self.robot.ends[self.ended?];
+        (!name.is_empty()).then(|| Arc::clone(name))
     }
 
     fn outcome(&self) -> Option<Outcome> {

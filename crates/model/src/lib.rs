@@ -36,6 +36,7 @@ mod compile;
 mod corners;
 mod delay;
 mod environment;
+mod held;
 mod names;
 mod parameter;
 mod problem;

@@ -1,6 +1,7 @@
 //! What names in formulas stand for.
 
 mod attributes;
+mod faulty;
 
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use hwasp_expr::{Distribution, Formulas, Function, NameError, Part, Path, Quanti
 
 pub(crate) use self::attributes::attributes;
 use self::attributes::{ENERGY, LENGTH, SPEED, three};
+use self::faulty::Faulty;
 use crate::anatomy::Anatomy;
 use crate::columns::{Column, Columns, Reading, Stage};
 
@@ -92,6 +94,7 @@ pub(crate) struct Names {
     pub(crate) memory: Vec<Part>,
     /// Time of an environment step, s.
     pub(crate) time_step: f64,
+    pub(crate) faulty: Faulty,
 }
 
 /// The names as one place sees them.
@@ -108,7 +111,7 @@ impl Scope for InPlace<'_> {
         if let Some(own) = names.own.iter().find(|own| own.name == path.first()) {
             return Ok(Symbol::new(own.value.parts.clone(), own.value.quantity, 1));
         }
-        let (columns, quantity, used) = names.find(path)?;
+        let (columns, quantity, used) = names.find(path).inspect_err(|_| names.faulty.note(path.first()))?;
         let parts = match columns {
             Found::Columns(columns) => columns
                 .into_iter()
@@ -146,7 +149,11 @@ impl Scope for InPlace<'_> {
     }
 
     fn function(&self, name: &str) -> Option<Arc<Function>> {
-        self.names.functions.iter().find(|function| function.name() == name).cloned()
+        let found = self.names.functions.iter().find(|function| function.name() == name).cloned();
+        if found.is_none() {
+            self.names.faulty.note(name);
+        }
+        found
     }
 
     fn functions(&self) -> Vec<String> {

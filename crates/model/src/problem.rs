@@ -65,12 +65,13 @@ impl Problem for ModelProblem {
     }
 }
 
-/// What the robot is, what the parameters of its design do, and the terms of the reward.
+/// What the robot is, what the parameters of its design do, the terms of the reward and what ends an episode.
 fn words(settings: &ModelSettings, robot: &Robot) -> Words {
     let names = robot.law.design().names();
     let design: Vec<(String, String)> = names.into_iter().zip(robot.uses.iter().cloned()).collect();
     let ports = |role, of: Vec<(String, String)>| of.into_iter().map(move |(name, meaning)| (role, name, meaning));
-    let ports = ports(Role::Design, design).chain(ports(Role::Reward, settings.reward.clone())).collect();
+    let purpose = ports(Role::Reward, settings.reward.clone()).chain(ports(Role::End, settings.ends.clone()));
+    let ports = ports(Role::Design, design).chain(purpose).collect();
     Words { about: about(settings, robot), ports }
 }
 
@@ -87,12 +88,12 @@ fn about(settings: &ModelSettings, robot: &Robot) -> String {
         shaping => format!(" The model is made from {}.", listed(shaping.iter().map(String::as_str))),
     };
     format!(
-        "The robot is {}: {}, {:.3} kg as the design begins. The reward is the sum of {}. Designed: {}.{shaping}",
+        "The robot is {}: {}, {:.3} kg as the design begins. The reward is the sum of {}. {}{shaping}",
         settings.model,
         parts.join(", "),
         mass,
         listed(robot.env.terms.iter().map(String::as_str)),
-        listed(design),
+        if design.is_empty() { "Nothing is designed.".to_owned() } else { format!("Designed: {}.", listed(design)) },
     )
 }
 
@@ -166,6 +167,10 @@ impl Mechanism for Model {
         crate::changes::changes(&self.0, before, after)
     }
 
+    fn doubts(&self) -> Vec<String> {
+        crate::held::doubts(&self.0)
+    }
+
     /// The model with the design, and the files that it refers to.
     fn write(&self, format: ModelFormat, design: &[f64]) -> Result<Vec<ModelFile>, AnyError> {
         if format != ModelFormat::Mjcf {
@@ -175,11 +180,7 @@ impl Mechanism for Model {
         let mut making = robot.additions.spec(&robot.main, &robot.files)?;
         if let Some(shaping) = &robot.shaping {
             let columns = crate::corners::columns(robot, design, 0.0, 1.0);
-            let mut tape = shaping.formula.program.tape::<f64>(1);
-            let mut out = vec![0.0; shaping.fields.len()];
-            shaping.formula.program.bind(design, &mut tape);
-            shaping.formula.program.forward(&columns, 1, 1, &mut tape, &mut out, 1);
-            for (field, &value) in shaping.fields.iter().zip(&out) {
+            for (field, value) in shaping.fields.iter().zip(shaping.formula.run(design, &columns)) {
                 making.set(field, value)?;
             }
         }

@@ -26,10 +26,14 @@ const OTHERS: [(&str, &str); 13] = [
     ("pi", "3.14159…"),
 ];
 
+/// The one field that stays as the file of the model has it: the length of an environment's step follows from it.
+pub(crate) const TIME_STEP: &str = "option.timestep";
+
 /// The fields of the model that designs can set, as a table in Markdown.
 pub fn settable() -> String {
     let mut text = "| field | numbers | measures |\n|---|---|---|\n".to_owned();
-    for field in settable_fields() {
+    // The time step is that of the model's file: the compiler refuses to set it.
+    for field in settable_fields().into_iter().filter(|field| (field.kind, field.name) != (Kind::Options, "timestep")) {
         let element = if field.kind == Kind::Options { "" } else { ".NAME" };
         let numbers = match (field.len, field.letters.is_empty()) {
             (1, _) => "1".to_owned(),
@@ -39,8 +43,11 @@ pub fn settable() -> String {
                 format!("{len}: {}", letters.join(", "))
             }
         };
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "| `{}{element}.{}` | {numbers} | {} |", field.kind, field.name, field.units);
+        let path = format!("{}{element}.{}", field.kind, field.name);
+        if path != TIME_STEP {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "| `{path}` | {numbers} | {} |", field.units);
+        }
     }
     text
 }

@@ -29,6 +29,17 @@ pub(crate) struct Formula {
     pub(crate) draws: Vec<(Distribution, usize)>,
 }
 
+impl Formula {
+    /// What it comes to once; for steps there is [`Ready`](crate::ready::Ready).
+    pub(crate) fn run(&self, design: &[f64], values: &[f64]) -> Vec<f64> {
+        let mut tape = self.program.tape::<f64>(1);
+        let mut out = vec![0.0; self.program.output_names().len()];
+        self.program.bind(design, &mut tape);
+        self.program.forward(values, 1, 1, &mut tape, &mut out, 1);
+        out
+    }
+}
+
 /// Fields of the model that follow design and random quantities.
 #[derive(Clone, Debug)]
 pub(crate) struct Shaping {
@@ -43,7 +54,7 @@ pub(crate) struct Shaping {
 pub(crate) struct Outputs {
     pub(crate) observations: usize,
     pub(crate) terms: usize,
-    pub(crate) ends: bool,
+    pub(crate) ends: usize,
     pub(crate) success: bool,
     pub(crate) kinds: usize,
     pub(crate) memory: usize,
@@ -55,16 +66,17 @@ impl Outputs {
         self.observations..self.observations + self.terms
     }
 
-    pub(crate) fn ends_at(&self) -> Option<usize> {
-        self.ends.then_some(self.observations + self.terms)
+    pub(crate) fn ends_at(&self) -> Range<usize> {
+        let from = self.terms_at().end;
+        from..from + self.ends
     }
 
     pub(crate) fn success_at(&self) -> Option<usize> {
-        self.success.then_some(self.observations + self.terms + usize::from(self.ends))
+        self.success.then_some(self.ends_at().end)
     }
 
     pub(crate) fn kinds_at(&self) -> Range<usize> {
-        let from = self.observations + self.terms + usize::from(self.ends) + usize::from(self.success);
+        let from = self.ends_at().end + usize::from(self.success);
         from..from + self.kinds
     }
 }
@@ -83,13 +95,15 @@ pub(crate) struct Robot {
     pub(crate) columns: Vec<Column>,
     /// Columns of the law's states, in its order.
     pub(crate) states: Vec<usize>,
-    /// Columns of the law's commands and states: for the law at the rate of the physics.
+    /// The quantities of an episode, and their columns.
     pub(crate) random: Option<(Formula, Vec<usize>)>,
     pub(crate) shaping: Option<Shaping>,
     /// Targets in positions and velocities.
     pub(crate) start: Option<(Formula, Vec<Reading>)>,
     pub(crate) step: Formula,
     pub(crate) outputs: Outputs,
+    /// What ends are called; one that stands alone has no name.
+    pub(crate) ends: Vec<Arc<str>>,
     pub(crate) kinds: Vec<Arc<str>>,
     /// Bodies that forces act on, with 3 or 6 components.
     pub(crate) forces: Option<(Formula, Vec<(usize, usize)>)>,
@@ -199,7 +213,10 @@ impl Robot {
         }
         match self.env.terms.get(at - outputs.observations) {
             Some(term) => format!("the reward `{term}`"),
-            None if outputs.ends_at() == Some(at) => "`ends`".to_owned(),
+            None if outputs.ends_at().contains(&at) => match &*self.ends[at - outputs.ends_at().start] {
+                "" => "`ends`".to_owned(),
+                name => format!("the end `{name}`"),
+            },
             None if outputs.success_at() == Some(at) => "`success`".to_owned(),
             None => format!("the kind `{}`", self.kinds[at - outputs.kinds_at().start]),
         }

@@ -22,8 +22,10 @@ choice! {
 }
 
 choice! {
-    /// How the root of a robot in URDF is held.
+    /// How the root of a robot is held.
     pub enum Base {
+        /// As its file says: to the world where a URDF says nothing.
+        AsModel = "as-model",
         /// To the world.
         Fixed = "fixed",
         /// Not at all.
@@ -42,7 +44,7 @@ pub struct ModelSettings {
     pub frame_skip: usize,
     /// See [`Readings`].
     pub readings: Readings,
-    /// How the root of a URDF is held.
+    /// How the root is held.
     pub base: Base,
     /// Whether a floor is added.
     pub floor: bool,
@@ -60,8 +62,8 @@ pub struct ModelSettings {
     pub observe: Vec<String>,
     /// The terms of the reward.
     pub reward: Named,
-    /// When an episode ends in failure.
-    pub ends: String,
+    /// When an episode ends in failure: conditions by name, or one whose name is empty.
+    pub ends: Named,
     /// Whether an episode is a success, at its end.
     pub success: String,
     /// Kinds of episodes, of which success is told apart: the first by name that holds at the start.
@@ -93,7 +95,7 @@ impl Default for ModelSettings {
             model_sha256: None,
             frame_skip: 1,
             readings: Readings::Fresh,
-            base: Base::Fixed,
+            base: Base::AsModel,
             floor: false,
             motors: Vec::new(),
             commands: Vec::new(),
@@ -102,7 +104,7 @@ impl Default for ModelSettings {
             random: Vec::new(),
             observe: Vec::new(),
             reward: Vec::new(),
-            ends: String::new(),
+            ends: Vec::new(),
             success: String::new(),
             kinds: Vec::new(),
             start: Vec::new(),
@@ -123,8 +125,9 @@ impl PartialEq for ModelSettings {
     fn eq(&self, other: &Self) -> bool {
         let plain = |s: &Self| (s.model.clone(), s.frame_skip, s.readings, s.base, s.floor, s.keyframe.clone());
         let texts = |s: &Self| {
-            let one = [&s.ends, &s.success, &s.observation_delay, &s.command_delay].map(Clone::clone);
-            let named = [&s.define, &s.random, &s.reward, &s.kinds, &s.start, &s.forces, &s.law].map(Clone::clone);
+            let one = [&s.success, &s.observation_delay, &s.command_delay].map(Clone::clone);
+            let named =
+                [&s.define, &s.random, &s.reward, &s.ends, &s.kinds, &s.start, &s.forces, &s.law].map(Clone::clone);
             (one, named, s.observe.clone(), s.set.clone())
         };
         plain(self) == plain(other)
@@ -183,6 +186,26 @@ fn text_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut String, meanin
     });
 }
 
+/// One formula, whose name is empty, or a table of them.
+fn either_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut Named, meaning: &str) {
+    let item = match &value[..] {
+        [(name, text)] if name.is_empty() => Some(Item::from(text.as_str())),
+        _ => named_item(value),
+    };
+    let kind = Kind::AnyOf(vec![formula(), formulas()]);
+    fields.default("none").kind(kind).open(key, meaning, item, |section, node| {
+        let found = match node.value {
+            Value::Table(_) => named(section, key, node),
+            _ => {
+                text(section, key, node).map(|text| if text.is_empty() { vec![] } else { vec![(String::new(), text)] })
+            }
+        };
+        if let Some(found) = found {
+            *value = found;
+        }
+    });
+}
+
 /// A table of commands.
 fn commands_field(fields: &mut Fields<'_, '_>, key: &str, value: &mut Vec<Command>, meaning: &str) {
     let keys = value.iter().map(|command| (command.name.clone(), command.item())).collect();
@@ -216,7 +239,11 @@ impl ModelSettings {
             200,
             "where episodes start, before `start`; empty: as the model says",
         );
-        fields.choice("base", &mut self.base, "how the root of a robot in URDF is held");
+        fields.choice(
+            "base",
+            &mut self.base,
+            "how the robot's root is held: as its file says, to the world, or not at all",
+        );
         fields.flag("floor", &mut self.floor, "whether a floor is added, a plane at height 0");
         let about = "motors that are added to joints: `{ knee = { limits = [-1, 1], gear = 50 } }`";
         commands_field(fields, "motors", &mut self.motors, about);
@@ -232,7 +259,8 @@ impl ModelSettings {
         named_field(fields, "random", &mut self.random, "quantities that are drawn when an episode starts");
         list_field(fields, "observe", &mut self.observe, "what the controller sees");
         named_field(fields, "reward", &mut self.reward, "terms of the reward of a step, by name");
-        text_field(fields, "ends", &mut self.ends, "when an episode ends before its time, in failure");
+        let about = "when an episode ends before its time, in failure: one condition, or several by name, `{ fallen = \"body.torso.pos.z < 0.5 m\" }`";
+        either_field(fields, "ends", &mut self.ends, about);
         text_field(fields, "success", &mut self.success, "whether an episode is a success, at its end");
         let about =
             "kinds of episodes of which success is told apart: the first by name that holds at the start, else `other`";
@@ -274,7 +302,9 @@ impl ModelSettings {
             let hint = "name the robot's model, MJCF or URDF, relative to the experiment: model = \"robot.xml\"";
             return section.clash("model", "task.model is missing".into(), hint);
         }
-        if !section.all_sound() {
+        // What is wrong elsewhere hides no fault of the formulas.
+        let whole = ["model", "model_sha256", "frame_skip", "readings", "base", "floor", "motors", "commands"];
+        if !whole.iter().all(|key| section.sound(&[key]) && section.sound_below(&section.path(key))) {
             return;
         }
         match gather(section.folder(), &self.model) {

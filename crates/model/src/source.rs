@@ -33,8 +33,14 @@ impl From<FolderError> for SourceFault {
 /// Reads a model and everything that it names. Paths in the result are relative to the folder.
 pub(crate) fn gather(folder: &Folder, model: &str) -> Result<Files, SourceFault> {
     let main = inside(model).ok_or_else(|| FolderError::Outside { path: model.to_owned() })?;
-    let mut gather =
-        Gather { folder, files: BTreeMap::new(), bytes: 0, assets: Vec::new(), directories: Directories::default() };
+    let mut gather = Gather {
+        folder,
+        files: BTreeMap::new(),
+        bytes: 0,
+        assets: Vec::new(),
+        directories: Directories::default(),
+        open: Vec::new(),
+    };
     gather.model(&main, base_of(&main), 0)?;
     for (kind, file) in std::mem::take(&mut gather.assets) {
         let path = gather.directories.path(base_of(&main), kind, &file);
@@ -95,6 +101,8 @@ struct Gather<'f> {
     bytes: u64,
     assets: Vec<(Asset, String)>,
     directories: Directories,
+    /// The files that are being read, each of which includes the next.
+    open: Vec<String>,
 }
 
 impl Gather<'_> {
@@ -102,7 +110,7 @@ impl Gather<'_> {
     fn model(&mut self, path: &str, base: &str, depth: usize) -> Result<(), SourceFault> {
         if depth > DEEPEST {
             let message = format!("`{path}` is included more than {DEEPEST} files deep");
-            return Err(SourceFault { message, hint: "does a file include itself?".to_owned() });
+            return Err(SourceFault { message, hint: "put what they include into fewer files".to_owned() });
         }
         let bytes = self.read(path, LARGEST_MODEL, path)?;
         let text = std::str::from_utf8(&bytes).map_err(|_| SourceFault {
@@ -139,12 +147,21 @@ impl Gather<'_> {
                 _ => {}
             }
         }
+        self.open.push(path.to_owned());
         for path in included {
             let inside = inside(&path).ok_or(FolderError::Outside { path })?;
+            if let Some(at) = self.open.iter().position(|open| *open == inside) {
+                let circle: Vec<&str> = self.open[at..].iter().chain([&inside]).map(String::as_str).collect();
+                return Err(SourceFault {
+                    message: format!("`{inside}` includes itself: {}", circle.join(", ")),
+                    hint: "take the last of these inclusions out of its file".to_owned(),
+                });
+            }
             if !self.files.contains_key(&inside) {
                 self.model(&inside, base, depth + 1)?;
             }
         }
+        self.open.pop();
         Ok(())
     }
 
@@ -229,10 +246,18 @@ mod tests {
         assert_eq!(one("<html/>"), "`a.xml` begins with <html>");
         assert!(names(&sent(&[]), "a.xml").unwrap_err().contains("no file `a.xml`"));
         assert!(names(&Folder::Nowhere, "a.xml").unwrap_err().contains("no folder"));
-        // A file that includes itself is read once.
+    }
+
+    /// A file that includes itself was read once, and the engine said something else of it.
+    #[test]
+    fn a_circle_of_files_is_told() {
+        let include = |file: &str| format!("<mujoco><include file=\"{file}\"/></mujoco>");
+        let told = |files: &[(&str, &str)]| names(&sent(files), "a.xml").unwrap_err();
+        assert_eq!(told(&[("a.xml", &include("a.xml"))]), "`a.xml` includes itself: a.xml, a.xml");
+        let (a, b, c) = (include("b.xml"), include("c.xml"), include("b.xml"));
         assert_eq!(
-            names(&sent(&[("a.xml", r#"<mujoco><include file="a.xml"/></mujoco>"#)]), "a.xml").unwrap(),
-            ["a.xml"]
+            told(&[("a.xml", &a), ("b.xml", &b), ("c.xml", &c)]),
+            "`b.xml` includes itself: b.xml, c.xml, b.xml"
         );
     }
 }

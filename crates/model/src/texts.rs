@@ -59,14 +59,13 @@ pub(crate) fn named(section: &Section<'_>, key: &str, node: &Node) -> Option<Nam
         section.wrong(key, node, &format!("has more than {MOST} entries"), None);
         return None;
     }
+    // What is wrong with one entry hides no fault of the others.
     let mut found = Vec::new();
-    let mut sound = true;
     for (name, entry) in table {
         let inner = format!("{key}.{}", shorten(name, 60));
         if name.is_empty() || name.len() > LONGEST_NAME {
             let message = format!("{} has a name of {} bytes", section.path(&inner), name.len());
             section.fault_at(&entry.key, &inner, message, Some(format!("use 1 to {LONGEST_NAME}")));
-            sound = false;
             continue;
         }
         if let Value::Table(deeper) = &entry.node.value {
@@ -80,15 +79,11 @@ pub(crate) fn named(section: &Section<'_>, key: &str, node: &Node) -> Option<Nam
             let message = format!("{} is a table, where a name with its formula belongs", section.path(&inner));
             let hint = format!("a name with dots stands in quotes: \"{}\" = \"…\"", shorten(&whole, 60));
             section.fault_at(&entry.key, &inner, message, Some(hint));
-            sound = false;
             continue;
         }
-        match text(section, &inner, &entry.node) {
-            Some(text) => found.push((name.clone(), text)),
-            None => sound = false,
-        }
+        found.extend(text(section, &inner, &entry.node).map(|text| (name.clone(), text)));
     }
-    sound.then_some(found)
+    Some(found)
 }
 
 /// As it is written; an empty table is not.

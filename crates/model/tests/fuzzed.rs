@@ -117,7 +117,11 @@ fn line() -> impl Strategy<Value = (&'static str, String)> {
         (select(keys), what).prop_map(move |(key, text)| (table, format!("\"{key}\" = \"{text}\"\n"))).boxed()
     };
     prop_oneof![
-        state().prop_map(|text| ("", format!("ends = \"{text}\"\n"))),
+        // One condition, or one by name.
+        state().prop_map(|text| match text.len() % 2 {
+            0 => ("", format!("ends = \"{text}\"\n")),
+            _ => ("ends", format!("fallen = \"{text}\"\n")),
+        }),
         state().prop_map(|text| ("", format!("success = \"{text}\"\n"))),
         own().prop_map(|text| ("", format!("observation_delay = \"{text}\"\n"))),
         (select(vec!["0.01 s", "progress * 4 ms", "9 ms * half", "3"]))
@@ -149,7 +153,11 @@ fn experiment() -> impl Strategy<Value = String> {
             ("design", "gear = { limits = [1, 9] }\nshank = { limits = [\"0.1 m\", \"0.3 m\"] }\n"),
         ];
         let mut known: Vec<String> = Vec::new();
-        for table in ["", "reward", "define", "random", "design", "start", "forces", "law", "kinds"] {
+        for table in ["", "reward", "define", "random", "design", "start", "forces", "law", "kinds", "ends"] {
+            // One condition stands in the place of the table.
+            if table == "ends" && known.iter().any(|key| key == " ends") {
+                continue;
+            }
             if !table.is_empty() {
                 text.extend(["[task.", table, "]\n"]);
             }

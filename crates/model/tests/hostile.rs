@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use std::sync::Arc;
+mod common;
 
+use common::seen;
 use hwasp_core::{End, Environment, Purpose, stream};
-use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers, resolve};
+use hwasp_experiment::{Experiment, Faults};
 use hwasp_problem::ModelFormat;
-use hwasp_testing::catalogue;
 
 /// A load on a slide, behind a plate that is only seen, in two shapes.
 const SLED: &str = r#"<mujoco>
@@ -25,22 +25,11 @@ const SLED: &str = r#"<mujoco>
 </mujoco>"#;
 
 fn resolved(text: &str) -> Result<Experiment, Faults> {
-    let files = Files::from([("sled.xml".to_owned(), Arc::from(SLED.as_bytes()))]);
-    let reward = if text.contains("[task.reward]") { "" } else { "\n[task.reward]\nnone = 0\n" };
-    let text = format!("name = \"sled\"\n[task]\nproblem = \"model\"\nmodel = \"sled.xml\"\n{text}{reward}");
-    let layers = Layers::from_text("sled.toml", &text).unwrap().with_folder(Folder::Sent(Arc::new(files)));
-    resolve(layers, Some("fixed"), catalogue())
+    common::resolved(SLED, text)
 }
 
 fn robot(text: &str) -> Box<dyn Environment> {
-    let experiment = resolved(text).unwrap_or_else(|faults| panic!("{faults}"));
-    experiment.task.built().deployment.make.make(None)
-}
-
-fn seen(robot: &dyn Environment) -> Vec<f64> {
-    let mut seen = vec![0.0; robot.spec().observation.len()];
-    robot.observe(&mut seen);
-    seen
+    common::robot(SLED, text)
 }
 
 /// An environment that has lived shows what a new one does.
@@ -78,8 +67,6 @@ fn what_is_no_number_is_told_by_name() {
         ("observe = [\"time\"]\nends = \"log(1 - step)\"\n", "`ends` is -inf after 1 steps"),
         ("observe = [\"time\"]\nsuccess = \"log(1 - step)\"\n", "`success` is -inf after 1 steps"),
         ("observe = [\"time\"]\n[task.reward]\nodd = \"log(1 - step)\"\n", "the reward `odd` is -inf after 1 steps"),
-        ("observe = [\"time\"]\nobservation_delay = \"-1 s\"\n", "a delay is -1 s: it can be 0 to 10 s, 1000 steps"),
-        ("observe = [\"time\"]\ncommand_delay = \"11 s\"\n", "a delay is 11 s"),
     ] {
         let mut robot = robot(text);
         robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
@@ -196,4 +183,67 @@ fn draws_that_cannot_be_are_faults() {
     let mut robot = robot(sound);
     robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, 0));
     assert_eq!(robot.fault(), None);
+}
+
+/// Delays that are drawn were taken, and then blamed on the physics of every episode; of constant ones no line was told.
+#[test]
+fn delays_are_within_their_limits() {
+    for (keys, said) in [
+        (
+            "observation_delay = \"-1 s\"\n",
+            "task.observation_delay: a delay is 0 to 10 s, 1000 steps, and this is -1 s",
+        ),
+        ("command_delay = \"11 s\"\n", "task.command_delay: a delay is 0 to 10 s, 1000 steps, and this is 11 s"),
+        ("command_delay = \"uniform(-0.02, 0.02) * 1 s\"\n", "task.command_delay: a delay is 0 to 10 s"),
+        ("observation_delay = \"late\"\n[task.random]\nlate = \"normal(20 ms, 10 ms)\"\n", "and this is -"),
+        (
+            "command_delay = \"late\"\n[task.design]\nlate = { limits = [\"0 s\", \"20 s\"] }\n",
+            "20 s with late = 20.0000",
+        ),
+        ("command_delay = \"10 s / progress\"\n", "and this is inf s"),
+    ] {
+        let faults = resolved(keys).unwrap_err();
+        let [fault] = faults.faults() else { panic!("{faults}") };
+        assert!(fault.message.contains(said) && fault.line == Some(5) && fault.excerpt.is_some(), "{fault}");
+    }
+    resolved("observation_delay = \"max(normal(20 ms, 10 ms), 0 s)\"\n").unwrap();
+}
+
+/// Each fault is told once, and hides none of the others: those of the design hid those of the law, a definition was told again by
+/// whoever named it, and a term of the reward with a bad name hid what the design does.
+#[test]
+fn every_fault_is_told_once() {
+    let told = |text: &str| -> Vec<String> {
+        let faults = resolved(text).unwrap_err();
+        faults.faults().iter().map(|fault| fault.key.clone()).collect()
+    };
+    for (text, keys) in [
+        (
+            "observe = [\"a + time\", \"b\"]\n[task.reward]\nt = \"a\"\n[task.define]\na = \"joint.slid.pos\"\nb = \"2 * a\"\n",
+            &["task.define.a"][..],
+        ),
+        (
+            "observe = [\"f(1)\"]\n[task.law]\n\"joint.slide\" = \"2 * k + hidden\"\n[task.start]\n\"joint.slid.pos\" = 0\n\
+             [task.design]\nk = { limits = [2, 1] }\n[task.define]\n\"f(x)\" = \"sqr(x)\"\n",
+            &["task.law.joint.slide", "task.start.joint.slid.pos", "task.design.k.limits", "task.define.f(x)"],
+        ),
+        ("[task.law]\n\"joint.slide\" = \"k * 1 N\"\n[task.design]\nk = { initial = 1 }\n", &["task.design.k"]),
+        (
+            "set = [\"geom.front.mass = k\"]\n[task.reward]\n\"how far\" = 1\n[task.design]\nk = { limits = [-1, 1] }\n",
+            &["task.reward.how far", "task.design"],
+        ),
+        (
+            "[task.random]\nload = \"late\"\n[task.define]\nlate = \"2 * later\"\nlater = \"1 +\"\n",
+            &["task.define.later"],
+        ),
+        ("[task.random]\nload = \"late\"\n[task.define]\nlate = \"command.push\"\n", &["task.random.load"]),
+        ("[task.random]\nload = \"late\"\n[task.define]\nlate = \"load\"\n", &["task.random.load"]),
+        (
+            "observe = [\"a\", \"d\"]\n[task.define]\na = \"b\"\nb = \"c\"\nc = \"b\"\nd = \"d\"\n",
+            &["task.define.b", "task.define.d"],
+        ),
+        ("observe = [\"effort.joint.slid\"]\n[task.law]\n\"joint.slid\" = 1\n", &["task.law.joint.slid"]),
+    ] {
+        assert_eq!(told(text), keys, "{text}{}", resolved(text).unwrap_err());
+    }
 }

@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use std::sync::Arc;
+mod common;
 
-use hwasp_core::{Environment, Purpose, stream};
-use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers, resolve};
-use hwasp_testing::catalogue;
+use common::seen;
+use hwasp_core::{Purpose, stream};
+use hwasp_experiment::{Experiment, Faults};
 
 /// A load of 2 kg on a slide, and a hinge beside it, without gravity.
 const BENCH: &str = r#"<mujoco>
@@ -25,21 +25,11 @@ const BENCH: &str = r#"<mujoco>
 </mujoco>"#;
 
 fn resolved(text: &str) -> Result<Experiment, Faults> {
-    let files = Files::from([("bench.xml".to_owned(), Arc::from(BENCH.as_bytes()))]);
-    let reward = if text.contains("[task.reward]") { "" } else { "\n[task.reward]\nnone = 0\n" };
-    let text = format!("name = \"bench\"\n[task]\nproblem = \"model\"\nmodel = \"bench.xml\"\n{text}{reward}");
-    let layers = Layers::from_text("bench.toml", &text).unwrap().with_folder(Folder::Sent(Arc::new(files)));
-    resolve(layers, Some("fixed"), catalogue())
+    common::resolved(BENCH, text)
 }
 
 fn experiment(text: &str) -> Experiment {
-    resolved(text).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-fn seen(robot: &dyn Environment) -> Vec<f64> {
-    let mut seen = vec![0.0; robot.spec().observation.len()];
-    robot.observe(&mut seen);
-    seen
+    common::experiment(BENCH, text)
 }
 
 /// Functions in every place: of the user, which read what is there, and of the library.
@@ -87,8 +77,7 @@ fn functions_are_formulas() {
     assert!(episodes[0].0.iter().zip(&episodes[1].0).all(|(a, b)| (a - b).abs() < 1e-9), "{episodes:?}");
     // What is written is read back.
     let written = by_name.to_toml().unwrap();
-    let files = Folder::Sent(Arc::clone(by_name.files()));
-    let again = resolve(Layers::from_text("experiment.toml", &written).unwrap().with_folder(files), None, catalogue());
+    let again = common::from(&written, by_name.files(), None);
     assert_eq!(again.unwrap(), by_name);
 }
 

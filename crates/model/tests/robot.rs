@@ -2,12 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
+mod common;
+
 use std::sync::Arc;
 
-use hwasp_core::{End, Environment, Form, Purpose, stream};
-use hwasp_experiment::{Experiment, Files, Folder, Layers, resolve};
+use common::{begin, files, from, seen};
+use hwasp_core::{End, Environment, Form};
+use hwasp_experiment::{Experiment, Files};
 use hwasp_problem::StandInKind;
-use hwasp_testing::catalogue;
 
 /// A load on a slide and a rod on a hinge, without gravity, so that what acts is what a test applies.
 const BENCH: &str = r#"<mujoco model="bench">
@@ -33,26 +35,11 @@ const BENCH: &str = r#"<mujoco model="bench">
 
 /// The bench with keys and tables of `[task]`.
 fn experiment(text: &str) -> Experiment {
-    let files = Files::from([("bench.xml".to_owned(), Arc::from(BENCH.as_bytes()))]);
-    let reward = if text.contains("[task.reward]") { "" } else { "\n[task.reward]\nnone = 0\n" };
-    let text = format!("name = \"bench\"\n[task]\nproblem = \"model\"\nmodel = \"bench.xml\"\n{text}{reward}");
-    let layers = Layers::from_text("bench.toml", &text).unwrap().with_folder(Folder::Sent(Arc::new(files)));
-    resolve(layers, Some("fixed"), catalogue()).unwrap_or_else(|faults| panic!("{faults}"))
+    common::experiment(BENCH, text)
 }
 
 fn robot(text: &str) -> Box<dyn Environment> {
-    experiment(text).task.built().deployment.make.make(None)
-}
-
-fn begin(robot: &mut dyn Environment, episode: u64) {
-    robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, episode));
-    assert_eq!(robot.fault(), None);
-}
-
-fn seen(robot: &dyn Environment) -> Vec<f64> {
-    let mut seen = vec![0.0; robot.spec().observation.len()];
-    robot.observe(&mut seen);
-    seen
+    common::robot(BENCH, text)
 }
 
 fn near(found: &[f64], wanted: &[f64], within: f64) {
@@ -244,16 +231,25 @@ fn a_robot_is_written_and_read_back() {
          [task.law]\n\"joint.hinge\" = \"-k * joint.hinge.pos\"\n[task.design]\nk = { limits = [0, \"3 N*m/rad\"], initial = \"1 N*m/rad\" }\n",
     );
     let text = first.to_toml().unwrap();
-    let again = |files: Arc<Files>| {
-        let layers = Layers::from_text("experiment.toml", &text).unwrap().with_folder(Folder::Sent(files));
-        resolve(layers, None, catalogue())
-    };
-    assert_eq!(again(Arc::clone(first.files())).unwrap(), first);
-    assert_eq!(again(Arc::clone(first.files())).unwrap().to_toml().unwrap(), text);
-    let other =
-        Files::from([("bench.xml".to_owned(), Arc::from(BENCH.replace("mass=\"2\"", "mass=\"3\"").as_bytes()))]);
-    let error = again(Arc::new(other)).unwrap_err().to_string();
+    let again = |files: &Arc<Files>| from(&text, files, None);
+    assert_eq!(again(first.files()).unwrap(), first);
+    assert_eq!(again(first.files()).unwrap().to_toml().unwrap(), text);
+    let error = again(&files(&BENCH.replace("mass=\"2\"", "mass=\"3\""))).unwrap_err().to_string();
     assert!(error.contains("not those that it was trained with"), "{error}");
+}
+
+/// Ends by name are written and read back, and what is wrong in one is told at its place; one alone needs no name.
+#[test]
+fn ends_have_names() {
+    let text = "[task.ends]\nfast = \"joint.slide.vel > 1\"\nright = \"joint.slide.pos > 0.02\"\n\
+                [task.start]\n\"joint.slide.pos\" = \"0.05\"\n";
+    let first = experiment(text);
+    let written = first.to_toml().unwrap();
+    assert_eq!(from(&written, first.files(), None).unwrap(), first);
+    let mut robot = robot(text);
+    begin(&mut *robot, 0);
+    assert_eq!(robot.step(&[], &[0.0, 0.0]).end, Some(End::Terminated));
+    assert_eq!(robot.ended_by().as_deref(), Some("right"));
 }
 
 /// A step allocates nothing, whatever is read, drawn, remembered and pushed.

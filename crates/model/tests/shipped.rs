@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_core::{Environment, Purpose, stream};
+mod common;
+
+use common::{begin, seen};
+use hwasp_core::Environment;
 use hwasp_experiment::Experiment;
 use hwasp_testing::{layers, resolve};
 
@@ -14,15 +17,8 @@ fn watched(name: &str, observe: &str) -> Experiment {
 /// What is seen at the start of an episode with a design.
 fn start(robot: &mut dyn Environment, design: &[f64], episode: u64) -> Vec<f64> {
     robot.set_design(design);
-    robot.reset(&mut stream(0, Purpose::EvaluationReset, 0, episode));
-    assert_eq!(robot.fault(), None);
+    begin(robot, episode);
     seen(robot)
-}
-
-fn seen(robot: &dyn Environment) -> Vec<f64> {
-    let mut seen = vec![0.0; robot.spec().observation.len()];
-    robot.observe(&mut seen);
-    seen
 }
 
 /// Every corner of the limits of a design.

@@ -65,6 +65,12 @@ pub trait Mechanism: Any + Debug + Send + Sync {
         Ok(Vec::new())
     }
 
+    /// What is likely to go wrong with it, though it can be built: for whoever checks an experiment, with ways out. Lines of one
+    /// doubt are parted by `\n`.
+    fn doubts(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The manufacturing errors to reckon with where nobody says others: what is off, by its name or the last word of it, and by
     /// how much, `("radius", "0.1 mm")`.
     fn manufacturing_errors(&self) -> Vec<(String, String)> {

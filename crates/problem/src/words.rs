@@ -15,6 +15,8 @@ pub enum Role {
     Design,
     /// A term of the reward: how it is computed.
     Reward,
+    /// A way in which an episode ends before its time: when it does. One that stands alone may have no name.
+    End,
 }
 
 /// What a problem and its ports mean.

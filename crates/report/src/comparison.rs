@@ -16,7 +16,7 @@ use crate::page::{KeyFigure, Page, Section};
 use crate::sections::curves::panels;
 use crate::sections::overview;
 use crate::sections::provenance::{command, origin};
-use crate::words::{decimal, decimals, duration, interval_or_none, sentence, spaced};
+use crate::words::{decimal, decimals, duration, interval_or_none, sentence};
 
 /// Reads a comparison and lays out its report.
 pub(super) fn page(folder: &Path, catalogue: &Catalogue) -> Result<Page, RunError> {
@@ -348,7 +348,7 @@ fn designs(saved: &SavedComparison) -> Markup {
             @let with = if shown.unit.is_empty() { String::new() } else { format!(", {}", shown.unit) };
             table {
                 caption {
-                    (what) (spaced(name)) (with) ", as built"
+                    (what) (name) (with) ", as built"
                     @if let Some(best) = group.optimum { "; best known " (shown.with_unit(best)) }
                 }
                 thead {

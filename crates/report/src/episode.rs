@@ -1,16 +1,16 @@
 //! Episodes to look at: a film of what shows itself, and curves.
 
-use hwasp_core::{Batch, Serial};
+use hwasp_core::{Batch, Port, Serial};
 use hwasp_plot::trace;
 use hwasp_runs::{RunError, SavedRun};
-use hwasp_training::{Assembly, EvaluateError, held_out, sampler};
+use hwasp_training::{Assembly, EvaluateError, World, held_out, sampler};
 use maud::{Markup, html};
 
 use crate::figure::{gallery, picture};
 use crate::film::{Request, film};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{sentence, spaced};
+use crate::words::sentence;
 
 /// Bytes of the films of a page, at most.
 const MOST_BYTES: usize = 180_000;
@@ -73,11 +73,14 @@ fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Mark
         let (centre, scale) = (normalizer.center()[i], normalizer.scale()[i]);
         let width = batch.obs.len() / batch.rows().max(1);
         let values: Vec<f64> = column(&batch.obs, width, i).iter().map(|value| centre + scale * value).collect();
-        traces.push((format!("observed: {}", spaced(&port.name)), port.dimension.si(), values));
+        traces.push((format!("observed: {}", port.name), port.dimension.si(), values));
     }
     for (i, port) in given.iter().enumerate() {
         let values = column(&batch.action, given.len(), i).iter().map(|value| value.clamp(port.lo, port.hi)).collect();
-        traces.push((format!("commanded: {}", spaced(&port.name)), port.dimension.si(), values));
+        traces.push((format!("commanded: {}", port.name), port.dimension.si(), values));
+    }
+    for (port, values) in efforts(assembly, params, batch) {
+        traces.push((format!("effort of the law: {}", port.name), port.dimension.si(), values));
     }
     traces.push(("reward".to_owned(), "", batch.reward.clone()));
     let about = "One line over the steps of the episode.";
@@ -91,10 +94,31 @@ fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Mark
     html! {
         p {
             "The first held-out episode (seed " (seed) "), by the deterministic controller on the hardware as built: what the \
-             controller sees, what it commands, and what each step is worth."
+             controller sees, what it commands, "
+            @if !environment.spec().effort.is_empty() { "what efforts the law makes of that, " }
+            "and what each step is worth."
         }
         (gallery(&pictures, ""))
     }
+}
+
+/// What the law gave in each step, effort by effort.
+fn efforts(assembly: &Assembly, params: &[f32], batch: &Batch) -> Vec<(Port, Vec<f64>)> {
+    let World { law, env, .. } = &assembly.worlds.deployment;
+    let design = assembly.built(params);
+    let reads = law.reads(&env.command).unwrap_or_default();
+    let mut traces: Vec<(Port, Vec<f64>)> = env.effort.iter().map(|port| (port.clone(), Vec::new())).collect();
+    let mut effort = vec![0.0; traces.len()];
+    for row in 0..batch.rows() {
+        let commands = &batch.action[row * env.command.len()..][..env.command.len()];
+        let limited = |&c: &usize| f64::from(commands[c]).clamp(env.command[c].lo, env.command[c].hi);
+        let command: Vec<f64> = reads.iter().map(limited).collect();
+        let state = &batch.state[row * env.state.len()..][..env.state.len()];
+        let state: Vec<f64> = state.iter().map(|&value| f64::from(value)).collect();
+        law.effort(&design, &command, &state, &mut effort);
+        traces.iter_mut().zip(&effort).for_each(|((_, values), &effort)| values.push(effort));
+    }
+    traces
 }
 
 fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, EvaluateError> {

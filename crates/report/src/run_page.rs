@@ -3,11 +3,11 @@
 use hwasp_runs::text::{ReadableUnit, grouped};
 use hwasp_runs::{RunError, Summary};
 
+use crate::episode;
 use crate::page::{KeyFigure, Page};
 use crate::run::Run;
 use crate::sections::{curves, design, hand, law, outcome, overview, parts, provenance, tolerances};
 use crate::words::{decimal, duration, mean_interval, percent, rate_interval};
-use crate::{episode, words};
 
 /// The report.
 pub(crate) fn page(run: &Run) -> Result<Page, RunError> {
@@ -36,7 +36,7 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
         let shown = ReadableUnit::of(&group.group);
         let best = group.group.optimum.map_or(String::new(), |best| format!("best known {}", shown.with_unit(best)));
         let label = if group.position.len() == 1 { String::new() } else { "Total ".to_owned() };
-        let label = label + &words::spaced(&group.name);
+        let label = label + &group.name;
         figures.push(figure(&label, shown.with_unit(group.group.total_as_built), best));
     }
     let discounted = &evaluation.discounted_return;

@@ -65,7 +65,7 @@ pub(super) fn sentence(text: &str) -> String {
     text
 }
 
-/// A name without underscores.
+/// The name of a hand's joint in prose. Names that a user has given, or types, stay as they are.
 pub(super) fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }

@@ -16,7 +16,7 @@ pub(crate) const FAULTS: &str = "faults";
 pub const SUMMARY: &str = "summary.json";
 
 /// What lies in a run folder by these names is the run's own, in lower case.
-pub(crate) const OWN: [&str; 15] = [
+pub(crate) const OWN: [&str; 18] = [
     "experiment.toml",
     PROVENANCE,
     METRICS,
@@ -32,6 +32,9 @@ pub(crate) const OWN: [&str; 15] = [
     "tensorboard",
     "export",
     "play",
+    "build",
+    "closing.svg",
+    "closing.png",
 ];
 
 /// The largest summary that is read, bytes: ten thousand parameters take less than one.

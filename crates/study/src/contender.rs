@@ -32,7 +32,8 @@ impl Contender {
     }
 
     /// Reads `hwasp`, or `fixed:middle`, `fixed:random`, `fixed:2 N/m`, `fixed:{ gear = 70, shank = "0.5 m" }`: a method, and
-    /// after a colon where the design begins, which is where hardware that is fixed stays.
+    /// after a colon where the design begins, which is where hardware that is fixed stays. Parameters that are not named begin
+    /// where the problem says, in the middle where it does not.
     pub fn parse(text: &str) -> Result<Self, CompareError> {
         let text = text.trim();
         let (name, initial) = text.split_once(':').map_or((text, None), |(name, initial)| (name, Some(initial.trim())));
@@ -44,6 +45,14 @@ impl Contender {
         };
         if initial == Some("") {
             let hint = format!("say where the design begins, such as {name}:middle, or leave the colon out");
+            return Err(CompareError::Contender { text: text.to_owned(), hint });
+        }
+        // Values of parameters stand in one pair of braces, and nothing else has any.
+        let table = initial.and_then(|initial| initial.strip_prefix('{')).map(|text| text.strip_suffix('}'));
+        let inside = table.unwrap_or(initial).unwrap_or("}");
+        let named = table.is_none() || inside.contains('=') || inside.trim().is_empty();
+        if initial.is_some() && (inside.contains(['{', '}']) || !named) {
+            let hint = format!("write values of parameters like {name}:'{{ gear = 70, shank = \"0.5 m\" }}'");
             return Err(CompareError::Contender { text: text.to_owned(), hint });
         }
         let contender = Self { label: text.to_owned(), method, settings: Vec::new() };

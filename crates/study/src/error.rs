@@ -24,7 +24,7 @@ pub enum CompareError {
         source: AssembleError,
     },
     /// A contender that is none.
-    #[error("`{text}` names no method: {hint}")]
+    #[error("`{text}` is no contender: {hint}")]
     Contender {
         /// What was written.
         text: String,

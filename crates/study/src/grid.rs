@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
 use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
+use hwasp_runs::RunFolder;
 use hwasp_training::Assembly;
 
 use crate::cell::{CELLS, Cell, CellAnswer, State, Watch, Work};
@@ -42,6 +43,7 @@ impl Grid {
             for seed in self.seeds.clone() {
                 let layers = contender.apply(self.layers.clone()).with_override("seed", &seed.to_string());
                 let spec = resolve(layers, Some(contender.method.name()), catalogue)?;
+                RunFolder::check_names(&spec)?;
                 let assembly = Assembly::new(&spec)
                     .map_err(|source| CompareError::Assemble { label: contender.label.clone(), source })?;
                 let name = format!("{}-seed{seed}", contender.folder_name());

@@ -182,7 +182,8 @@ fn fixed_by_name() {
 
 #[test]
 fn contenders_that_are_none() {
-    for (text, told) in [("hwsap", "`hwsap` names no method: the methods are hwasp,"), ("fixed:", "`fixed:` names no")]
+    for (text, told) in
+        [("hwsap", "`hwsap` is no contender: the methods are hwasp,"), ("fixed:", "`fixed:` is no contender")]
     {
         let error = Contender::parse(text).unwrap_err().to_string();
         assert!(error.starts_with(told), "{error}");

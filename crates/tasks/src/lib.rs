@@ -11,5 +11,6 @@
 pub mod grasp;
 pub mod hand;
 pub mod mass_spring;
+mod paint;
 pub mod pendulum;
 pub mod reach;

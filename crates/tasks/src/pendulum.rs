@@ -48,13 +48,14 @@
 //! # End
 //! Truncated after 200 steps of 0.05 s. Never terminated.
 
+mod look;
 mod problem;
 
 use std::f64::consts::PI;
 
 use hwasp_core::{
     CommandPort, DesignError, DesignGroup, DesignSpace, Dimension, EnvSpec, Environment, Hardware, Initial, Law,
-    MakeEnvironment, Plant, Port, Ports, Robot, Stream, Task,
+    MakeEnvironment, Plant, Port, Ports, Robot, Sight, Stream, Task,
 };
 use hwasp_diff::Scalar;
 use rand::RngExt;
@@ -204,6 +205,8 @@ impl Plant for Rod {
 #[derive(Clone, Debug)]
 pub struct SwingUp {
     horizon: usize,
+    /// What is built, to be looked at.
+    gear: f64,
 }
 
 impl Task for SwingUp {
@@ -234,6 +237,10 @@ impl Task for SwingUp {
         }
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.gear = design.first().copied().unwrap_or(self.gear);
+    }
+
     fn reset(&mut self, rod: &mut Rod, rng: &mut Stream) {
         let mut within = |limit: f64| (rng.random::<f64>() * 2.0 - 1.0) * limit;
         let (angle, speed) = (within(PI), within(1.0));
@@ -249,6 +256,10 @@ impl Task for SwingUp {
     #[inline]
     fn reward(&mut self, rod: &Rod, _command: &[f64]) -> f64 {
         -rod.cost
+    }
+
+    fn look(&mut self, rod: &Rod) -> Option<Sight> {
+        Some(look::sight(rod.angle, self.gear))
     }
 }
 
@@ -275,7 +286,7 @@ impl Pendulum {
 
     /// An environment whose plant can be looked at; `horizon` replaces the task's own.
     pub fn robot(&self, horizon: Option<usize>) -> Robot<SwingUp> {
-        Robot::new(Rod::default(), SwingUp { horizon: self.horizon }, horizon)
+        Robot::new(Rod::default(), SwingUp { horizon: self.horizon, gear: Transmission::CLASSIC }, horizon)
     }
 }
 

@@ -40,11 +40,12 @@
 //! # End
 //! Truncated after 30 steps of 0.1 s. Never terminated.
 
+mod look;
 mod problem;
 
 use hwasp_core::{
     CommandPort, DesignError, DesignGroup, DesignSpace, Dimension, EnvSpec, Environment, Hardware, Initial, Law,
-    MakeEnvironment, Plant, Port, Ports, Robot, Stream, Task,
+    MakeEnvironment, Plant, Port, Ports, Robot, Sight, Stream, Task,
 };
 use hwasp_diff::Scalar;
 use rand::RngExt;
@@ -180,6 +181,8 @@ pub struct ReachTask {
     command_cost: f64,
     horizon: usize,
     time_step: f64,
+    /// What is built, to be looked at.
+    gear: f64,
 }
 
 impl Task for ReachTask {
@@ -206,6 +209,10 @@ impl Task for ReachTask {
         }
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.gear = design.first().copied().unwrap_or(self.gear);
+    }
+
     fn reset(&mut self, plant: &mut Rail, rng: &mut Stream) {
         plant.x = rng.random::<f64>() * 2.0 - 1.0;
     }
@@ -219,6 +226,10 @@ impl Task for ReachTask {
     fn reward(&mut self, plant: &Rail, command: &[f64]) -> f64 {
         let (away, command) = (plant.x - self.goal, command[0]);
         -away * away - self.command_cost * command * command
+    }
+
+    fn look(&mut self, plant: &Rail) -> Option<Sight> {
+        Some(look::sight(plant.x, self.goal, self.gear))
     }
 }
 
@@ -257,7 +268,8 @@ impl Reach {
     /// An environment whose plant can be looked at; `horizon` replaces the task's own.
     pub fn robot(&self, horizon: Option<usize>) -> Robot<ReachTask> {
         let &ReachSettings { goal, time_step, horizon: own, command_cost, .. } = &self.settings;
-        Robot::new(Rail { time_step, x: 0.0 }, ReachTask { goal, command_cost, horizon: own, time_step }, horizon)
+        let task = ReachTask { goal, command_cost, horizon: own, time_step, gear: Gear::OPTIMUM };
+        Robot::new(Rail { time_step, x: 0.0 }, task, horizon)
     }
 
     /// The best gear.

@@ -9,15 +9,12 @@ use hwasp_core::{
     Anneal, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
-use hwasp_experiment::{ActivationKind, Experiment, Method, Place, total_name};
+use hwasp_experiment::{ActivationKind, Experiment, MOST_CORRELATED, Method, Place, total_name};
 use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
 pub use self::budget::Piece;
 pub(crate) use self::budget::{FINAL_EPISODES, Portion};
-
-/// The most parameters of a full covariance: its matrices take 1 GB then, and each decomposition seconds.
-const MOST_CORRELATED: usize = 5000;
 
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
@@ -66,11 +63,17 @@ pub enum AssembleError {
         /// Parameters of the policy.
         parameters: usize,
     },
-    /// A search over a design that is all fixed.
-    #[error("method {method} searches the design, but all of it is fixed; let design.placement be \"action\"")]
+    /// A search over a design that is all fixed, or over none.
+    #[error("method {method} searches the design, {}", if *.parameters == 0 {
+        "and nothing is designed; take the method fixed, which trains a controller alone, or cmaes or ars, which search one"
+    } else {
+        "but all of it is fixed; let design.placement be \"action\""
+    })]
     NothingToSearch {
         /// The method.
         method: &'static str,
+        /// Design parameters that there are.
+        parameters: usize,
     },
 }
 

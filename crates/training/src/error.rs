@@ -18,6 +18,22 @@ pub enum TrainError {
     /// An update failed.
     #[error(transparent)]
     Learn(#[from] LearnError),
+    /// An update failed after rewards that single precision, in which learners compute, does not hold for long.
+    #[error(
+        "the reward is too large to learn from: up to {largest:.1e} in a step of iteration {iteration}{}; divide it, so that a step \
+         is worth about 1, or set train.reward_scaling = true ({source})",
+        .term.as_ref().map_or_else(String::new, |term| format!(", most of it from the term `{term}`"))
+    )]
+    Reward {
+        /// The largest reward of a step that the learner saw, without its sign.
+        largest: f64,
+        /// The iteration.
+        iteration: u64,
+        /// The term that has the most of it, where the reward has names for several.
+        term: Option<String>,
+        /// What the learner found.
+        source: LearnError,
+    },
     /// The physics of most episodes failed, again and again: what is learned from the rest is worth nothing.
     #[error(
         "the physics of most episodes failed in {iterations} iterations in a row ({failed} of {asked} in the last); {first}"

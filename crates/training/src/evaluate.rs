@@ -62,7 +62,7 @@ fn evaluate_at(
 ) -> Result<Evaluation, EvaluateError> {
     let experiment = ExperimentText::of(assembly.experiment())?;
     let results = rollouts(collector, assembly, experiment, stage, params, asked)?;
-    Ok(Evaluation::new(&results, &assembly.worlds.deployment.env.terms, asked)?)
+    Ok(Evaluation::new(&results, &assembly.worlds.deployment.env, asked)?)
 }
 
 /// Evaluates the controller in `params` on a given design in a given world of the same problem, which only this process has.
@@ -78,7 +78,7 @@ pub fn evaluate_in(
     let (sampler, controller) = (sampler(assembly, world, design)?, assembly.policy.controller_params(params));
     let discount = assembly.experiment().discount();
     let results = sampler.outcomes(executor, controller, &held_out(seed, 0..episodes), discount)?;
-    Ok(Evaluation::new(&results, &world.env.terms, asked)?)
+    Ok(Evaluation::new(&results, &world.env, asked)?)
 }
 
 /// What the episodes of an evaluation come to, by index; the error where the physics failed. Their rows are not kept, so that

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hwasp_core::{EpisodeResult, RolloutError, Stream};
+use hwasp_core::{End, EnvSpec, EpisodeResult, RolloutError, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -90,12 +90,67 @@ pub struct Evaluation {
     /// Episodes whose physics failed; they are in none of the figures.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub discarded_episodes: u64,
+    /// How long episodes were and how they ended; runs of earlier versions do not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends: Option<Ends>,
     /// The share of episodes that succeeded, over all and for each kind, for tasks that know success.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub success: Vec<SuccessRate>,
     /// What each named term of the reward came to in an episode, on average; they add up to the return.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub terms: BTreeMap<String, f64>,
+}
+
+/// How long the episodes of an evaluation were, and how they ended; those whose physics failed are not among them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ends {
+    /// Their mean length, steps.
+    pub mean_steps: f64,
+    /// The same, s.
+    pub mean_s: f64,
+    /// Episodes that ran to the time limit.
+    pub time_limit: u64,
+    /// Episodes that ended before.
+    pub before: u64,
+    /// How many of them by what, where the task has names for it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub named: BTreeMap<String, u64>,
+}
+
+impl Ends {
+    /// Of some episodes, at least one of them sound, of steps of so many s.
+    fn of(results: &[EpisodeAnswer], time_step: f64) -> Self {
+        let (mut count, mut steps) = (0_u64, 0_u64);
+        let mut ends = Self { mean_steps: 0.0, mean_s: 0.0, time_limit: 0, before: 0, named: BTreeMap::new() };
+        for episode in results.iter().flatten() {
+            (count, steps) = (count + 1, steps + episode.steps as u64);
+            match episode.end {
+                End::Terminated => ends.before += 1,
+                End::Truncated | End::Faulted => ends.time_limit += 1,
+            }
+            if let Some(name) = &episode.ended_by {
+                *ends.named.entry((**name).to_owned()).or_default() += 1;
+            }
+        }
+        ends.mean_steps = steps as f64 / count as f64;
+        ends.mean_s = ends.mean_steps * time_step;
+        ends
+    }
+}
+
+/// As a sentence has it: `600 of 1000 ran to the time limit, 400 ended before it (fallen 300, tilted 100)`.
+impl std::fmt::Display for Ends {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.time_limit, self.before) {
+            (_, 0) => return write!(f, "all ran to the time limit"),
+            (0, _) => write!(f, "all ended before the time limit")?,
+            (ran, before) => {
+                write!(f, "{ran} of {} ran to the time limit, {before} ended before it", ran + before)?;
+            }
+        }
+        let named: Vec<String> = self.named.iter().map(|(name, count)| format!("{name} {count}")).collect();
+        if named.is_empty() { Ok(()) } else { write!(f, " ({})", named.join(", ")) }
+    }
 }
 
 /// How many episodes of a kind succeeded.
@@ -147,10 +202,10 @@ fn success_rates(results: &[EpisodeAnswer]) -> Vec<SuccessRate> {
 }
 
 impl Evaluation {
-    /// What the episodes come to, whose reward has these terms.
+    /// What the episodes of a world come to.
     pub(crate) fn new(
         results: &[EpisodeAnswer],
-        terms: &[String],
+        env: &EnvSpec,
         (episodes, seed): (u64, u64),
     ) -> Result<Self, StatsError> {
         let returns = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).collect::<Vec<_>>();
@@ -166,8 +221,9 @@ impl Evaluation {
             median_discounted_return: sample.quantile(0.5),
             worst_discounted_return: sample.min(),
             discarded_episodes: results.iter().filter(|result| result.is_err()).count() as u64,
+            ends: Some(Ends::of(results, env.time_step)),
             success: success_rates(results),
-            terms: terms.iter().cloned().zip(mean_terms(&of_terms)).collect(),
+            terms: env.terms.iter().cloned().zip(mean_terms(&of_terms)).collect(),
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hwasp_algos::{Archive, Exchange, Learner, Metrics, Persist, StateError};
+use hwasp_algos::{Archive, Exchange, LearnError, Learner, Metrics, Persist, StateError};
 use hwasp_core::{Batch, EpisodeKind, Episodes, Executor, LaneSteps};
 use hwasp_experiment::Experiment;
 
@@ -188,6 +188,17 @@ impl<'a> Gradient<'a> {
         }
     }
 
+    /// An error of the learner, or the rewards that it saw where they are the cause: they may be any number, and what is
+    /// computed from them not.
+    fn blamed(&self, error: LearnError, batch: &Batch) -> TrainError {
+        let largest = batch.reward.iter().fold(0.0, |most: f64, reward| most.max(reward.abs()));
+        if largest < LARGE_REWARD {
+            return error.into();
+        }
+        let term = largest_term(&self.assembly.worlds.training.env.terms, batch).cloned();
+        TrainError::Reward { largest, iteration: self.learned.iterations, term, source: error }
+    }
+
     /// The update of the iteration at hand.
     fn learn(&mut self, executor: &dyn Executor, batch: &mut Batch) -> Result<Metrics, TrainError> {
         let progress = self.assembly.experiment().train.progress(self.learned.env_steps);
@@ -210,6 +221,7 @@ impl<'a> Gradient<'a> {
         let scaled = running.rewards(batch);
         let rewards = scaled.map(|scaled| std::mem::replace(&mut batch.reward, scaled));
         let update = self.learner.update(executor, batch, progress, self.learned.iterations);
+        let update = update.map_err(|error| self.blamed(error, batch));
         if let Some(rewards) = rewards {
             batch.reward = rewards;
         }
@@ -217,6 +229,18 @@ impl<'a> Gradient<'a> {
         (self.running, self.learned.faulty_iterations) = (running, in_a_row);
         Ok(update)
     }
+}
+
+/// Rewards of which sums and squares leave the range of single precision, or lose in it what tells one step from another.
+const LARGE_REWARD: f64 = 1e12;
+
+/// The name of the reward's term that came to the most in the episodes of a batch, whatever its sign; none where there is no
+/// other.
+fn largest_term<'t>(terms: &'t [String], batch: &Batch) -> Option<&'t String> {
+    let size = |i: usize| batch.episodes.iter().map(|episode| episode.terms[i].abs()).fold(0.0, f64::max);
+    let sizes = (0..terms.len()).map(|i| (i, size(i)));
+    let largest = sizes.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| &terms[i]);
+    largest.filter(|_| terms.len() > 1)
 }
 
 /// The episodes of an iteration. The last one goes on with further episodes, by index, as long as the budget holds a whole one: how

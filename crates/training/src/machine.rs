@@ -1,6 +1,8 @@
 //! Whether two experiments are about the same machine: one that was trained, and the same in another world.
 
-use hwasp_core::{DesignGroup, EnvSpec, Law, PolicySpec};
+use std::sync::Arc;
+
+use hwasp_core::{CommandPort, DesignGroup, EnvSpec, Law, PolicySpec};
 use hwasp_problem::World;
 
 use crate::assemble::Assembly;
@@ -20,6 +22,14 @@ impl Assembly {
         let world = pairs.into_iter().find_map(|(one, other)| other_world(&one, &other));
         world.or_else(|| other_policy(self.policy.spec(), other.policy.spec()))
     }
+
+    /// What was trained here, in the worlds of `other`, which is no [other machine](Self::other_machine).
+    #[must_use]
+    pub fn judged_in(&self, other: &Self) -> Self {
+        let mut judged = other.clone();
+        judged.policy = Arc::clone(&self.policy);
+        judged
+    }
 }
 
 fn other_world(one: &World, other: &World) -> Option<&'static str> {
@@ -28,10 +38,14 @@ fn other_world(one: &World, other: &World) -> Option<&'static str> {
         let initial = hwasp_core::Initial::Value(0.0);
         law.design().groups().iter().map(|group| DesignGroup { initial, ..group.clone() }).collect()
     };
+    // Whether plant or task read a command as well says how training samples it, and nothing of what is built.
+    let motors = |env: &EnvSpec| -> Vec<CommandPort> {
+        env.command.iter().map(|port| CommandPort { direct: true, ..port.clone() }).collect()
+    };
     let ports = |env: &EnvSpec| (env.observation.clone(), env.state.clone(), env.effort.clone());
     if limits(&one.law) != limits(&other.law) {
         Some("the design's parameters or their limits")
-    } else if one.env.command != other.env.command {
+    } else if motors(&one.env) != motors(&other.env) {
         Some("the motors or their limits")
     } else if one.law.ports() != other.law.ports() || ports(&one.env) != ports(&other.env) {
         Some("what goes into the controller and the law and what comes out")

@@ -3,7 +3,7 @@
 //! Episodes of one index begin alike and meet the same noise whatever acts in them (common random numbers), so that the
 //! difference of two of them varies far less than either.
 
-use hwasp_core::{EpisodeResult, Executor, Stream};
+use hwasp_core::{EnvSpec, EpisodeResult, Executor, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
@@ -41,9 +41,9 @@ pub struct Reference<'a> {
     trials: Vec<Option<Trial>>,
 }
 
-/// The names of the reward's terms.
-fn terms(assembly: &Assembly) -> &[String] {
-    &assembly.worlds.deployment.env.terms
+/// What the world where the result has to work is from outside.
+fn env(assembly: &Assembly) -> &EnvSpec {
+    &assembly.worlds.deployment.env
 }
 
 impl<'a> Reference<'a> {
@@ -69,7 +69,7 @@ impl<'a> Reference<'a> {
         let experiment = ExperimentText::of(assembly.experiment())?;
         let stage = Stage::Deployment(design.to_vec());
         let results = rollouts(&*collector, assembly, experiment.clone(), stage, params, asked)?;
-        let (evaluation, trials) = (Evaluation::new(&results, terms(assembly), asked)?, trials(&results));
+        let (evaluation, trials) = (Evaluation::new(&results, env(assembly), asked)?, trials(&results));
         Ok(Self { assembly, experiment, asked, collector, evaluation, trials })
     }
 
@@ -79,7 +79,7 @@ impl<'a> Reference<'a> {
         let experiment = self.experiment.clone();
         let results = rollouts(&*self.collector, self.assembly, experiment, stage, params, self.asked)?;
         let change = Change::between(&self.trials, &trials(&results), self.asked.1)?;
-        Ok((Evaluation::new(&results, terms(self.assembly), self.asked)?, change))
+        Ok((Evaluation::new(&results, env(self.assembly), self.asked)?, change))
     }
 }
 

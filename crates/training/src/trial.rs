@@ -1,5 +1,6 @@
 //! A world tried out before anything is trained in it: with random commands and designs.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use hwasp_core::{End, EnvFault, Purpose, check_env, stream};
@@ -10,6 +11,9 @@ use rand::RngExt;
 const EPISODES: u64 = 8;
 /// The most steps of each.
 const STEPS: usize = 250;
+
+/// Steps within which an episode is over as it begins.
+pub const AT_ONCE: usize = 3;
 
 /// What a world did when it was tried.
 #[derive(Clone, Debug)]
@@ -26,6 +30,10 @@ pub struct Trial {
     pub most_steps: usize,
     /// Episodes that ended before that, by themselves.
     pub ended: u64,
+    /// Episodes that ended by themselves within [`AT_ONCE`] steps.
+    pub at_once: u64,
+    /// How many of them by what, where the task has names for it.
+    pub ended_by: BTreeMap<String, u64>,
     /// Episodes whose physics failed, and how the first of them did.
     pub failed: (u64, Option<String>),
     /// Whether every episode starts alike.
@@ -47,6 +55,8 @@ impl Trial {
             steps: 0,
             most_steps,
             ended: 0,
+            at_once: 0,
+            ended_by: BTreeMap::new(),
             failed: (0, None),
             fixed_start: false,
             broken: None,
@@ -83,7 +93,15 @@ impl Trial {
                         let why = env.fault().unwrap_or_else(|| "for no reason that it tells".to_owned());
                         trial.failed.1.get_or_insert(format!("step {}: {why}", step + 1));
                     }
-                    Some(End::Terminated) => trial.ended += 1,
+                    Some(End::Terminated) => {
+                        trial.ended += 1;
+                        if step < AT_ONCE {
+                            trial.at_once += 1;
+                        }
+                        if let Some(name) = env.ended_by() {
+                            *trial.ended_by.entry((*name).to_owned()).or_default() += 1;
+                        }
+                    }
                     Some(End::Truncated) => {}
                 }
                 break;
@@ -97,6 +115,11 @@ impl Trial {
             trial.broken = check_env(&*world.make, law, true).err();
         }
         trial
+    }
+
+    /// Whether most episodes end as they begin, where they could be longer.
+    pub fn is_over_at_once(&self) -> bool {
+        self.most_steps > AT_ONCE && 2 * self.at_once > self.episodes
     }
 
     /// Mean steps of an episode.

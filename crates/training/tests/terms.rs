@@ -4,8 +4,9 @@
 
 use std::sync::atomic::AtomicBool;
 
+use hwasp_core::Serial;
 use hwasp_testing::{Keeper, executor, layers, resolve};
-use hwasp_training::{Assembly, Event, Observer, ObserverError, Trained, train};
+use hwasp_training::{Assembly, Event, Observer, ObserverError, Trained, evaluate, train};
 
 /// Keeps rows and the names of terms.
 #[derive(Default)]
@@ -50,6 +51,37 @@ fn terms_add_up_to_the_return_on_any_number_of_threads() {
         let (sum, whole) = (evaluation.terms.values().sum::<f64>(), evaluation.undiscounted_return.mean);
         assert!((sum - whole).abs() <= 1e-9 * whole.abs(), "{method}: {evaluation:?}");
     }
+}
+
+/// A reward beyond single precision ended a training with "an advantage is not finite": nothing named the reward.
+#[test]
+fn a_reward_that_is_too_large_is_named() {
+    let settings = [("task.reward.place", "\"-1e60\""), ("train.env_steps", "6000")];
+    let layers = settings.iter().fold(layers("balanced-arm"), |layers, (k, v)| layers.with_override(k, v));
+    let assembly = Assembly::new(&resolve(layers, None).unwrap()).unwrap();
+    let error = train(&assembly, &Serial, &mut (), &AtomicBool::new(false)).unwrap_err().to_string();
+    let start = "the reward is too large to learn from: up to 1.0e60 in a step of iteration 0, most of it from the term `place`";
+    assert!(error.starts_with(start) && error.contains("train.reward_scaling = true"), "{error}");
+}
+
+/// Every evaluation tells how long its episodes were, and by which of the task's conditions they ended.
+#[test]
+fn ends_of_episodes_are_counted_by_name() {
+    let ends = |settings: &[(&str, &str)]| {
+        let layers = settings.iter().fold(layers("balanced-arm"), |layers, (k, v)| layers.with_override(k, v));
+        let assembly = Assembly::new(&resolve(layers, None).unwrap()).unwrap();
+        evaluate(&assembly, &assembly.init(), (6, 1), &Serial).unwrap().ends.unwrap()
+    };
+    let horizon = ("task.horizon", "50");
+    let to_the_end = ends(&[horizon]);
+    assert_eq!((to_the_end.mean_steps, to_the_end.time_limit, to_the_end.before), (50.0, 6, 0));
+    let early = ends(&[horizon, ("task.ends", "{ late = \"step >= 20\", later = \"step >= 20\", never = 0 }")]);
+    assert_eq!((early.mean_steps, early.time_limit, early.before), (20.0, 0, 6));
+    // Of several at once the first by name.
+    assert_eq!(early.named, [("late".to_owned(), 6)].into());
+    assert!((early.mean_s / to_the_end.mean_s - 0.4).abs() < 1e-12);
+    let unnamed = ends(&[horizon, ("task.ends", "\"step >= 20\"")]);
+    assert_eq!((unnamed.before, unnamed.named.len()), (6, 0));
 }
 
 /// Of trainings inside of a search only the returns come back; the evaluation has its terms.

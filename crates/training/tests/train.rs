@@ -208,6 +208,14 @@ fn a_fixed_design_is_what_it_is_given_to_be() {
     assert_eq!(design("mass-spring", &[("design.initial", "1.96 N/m")]), [1.96; 10]);
 }
 
+/// `{ gear = 90 }` put the other parameters into the middle of their limits, whatever the robot said of where they begin.
+#[test]
+fn parameters_that_are_not_named_begin_where_the_problem_says() {
+    let assembly = assembly("hopper", Some("fixed"), &[("design.initial", "{ gear = 90 }")]);
+    // gear, rest, shank, stiffness: the file says where the last one begins, the others begin in the middle.
+    assert_eq!(assembly.policy.design(&assembly.init()), [90.0, -0.5, 0.5, 20.0]);
+}
+
 /// TRPO is a learner like another: for every method that follows a gradient, alone or inside of a search.
 #[test]
 fn trpo_trains_by_every_method() {

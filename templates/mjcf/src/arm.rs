@@ -17,13 +17,15 @@
 
 use std::error::Error;
 
-use hwasp_core::Plant;
-use hwasp_mujoco::engine::{PhysicsFault, Simulation};
+use hwasp_core::{Plant, Sight};
+use hwasp_mujoco::engine::{PhysicsFault, Simulation, View};
 
 /// Bodies, joints and motors. It is part of the program: build again after a change.
 const MECHANISM: &str = include_str!("../mechanism.xml");
 /// What gravity does to the arm when it is level, N·m: lamp and arm of `mechanism.xml`, at their centres of mass.
 pub(crate) const GRAVITY_MOMENT: f64 = 9.81 * (0.6 * 0.4 + 0.2 * 0.2);
+/// Height of the pivot in `mechanism.xml`, m.
+pub(crate) const PIVOT: f64 = 0.15;
 /// Steps of the engine in one of the controller. The law's torque is held meanwhile.
 const STEPS: usize = 4;
 /// Step of the controller, s: so many of the `timestep` in `mechanism.xml`.
@@ -65,6 +67,11 @@ impl Arm {
     /// The angle, rad from upright.
     pub(crate) fn angle(&self) -> f64 {
         self.simulation.qpos()[self.position]
+    }
+
+    /// How it looks in films: as `mechanism.xml` says. The view is a copy, so that looking changes nothing.
+    pub(crate) fn sight(&self) -> Sight {
+        View::new(self.simulation.clone()).sight(self.simulation.qpos())
     }
 }
 

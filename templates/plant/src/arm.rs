@@ -1,6 +1,6 @@
 //! The plant: physics without purpose. A lamp at the end of a light arm, θ from upright.
 
-use hwasp_core::Plant;
+use hwasp_core::{Form, Plant, Sight, Solid};
 
 /// Mass of the lamp, kg.
 const MASS: f64 = 0.6;
@@ -16,6 +16,8 @@ pub(crate) const GRAVITY_MOMENT: f64 = MASS * 9.81 * LENGTH;
 const STEP: f64 = 0.005;
 /// Steps of the integration in one of the controller. The law's torque is held meanwhile.
 const STEPS: usize = 4;
+/// Height of the pivot, m.
+pub(crate) const PIVOT: f64 = 0.15;
 /// Step of the controller, s.
 pub(crate) const TIME_STEP: f64 = STEPS as f64 * STEP;
 
@@ -35,6 +37,21 @@ impl Arm {
     /// The angle, rad from upright.
     pub(crate) fn angle(&self) -> f64 {
         self.angle
+    }
+
+    /// How it looks in films: lamp and arm on a foot, m, in red, green and blue.
+    pub(crate) fn sight(&self) -> Sight {
+        let (sin, cos) = self.angle.sin_cos();
+        let [pivot, lamp] = [0.0, LENGTH].map(|length| [length * sin, 0.0, PIVOT + length * cos]);
+        let foot = Form::Cylinder { radius: 0.03, half_length: 0.5 * PIVOT };
+        Sight {
+            solids: vec![
+                Solid::new(foot, [0.0, 0.05, 0.5 * PIVOT], [196, 200, 206]).fixed(),
+                Solid::rod([pivot, lamp], 0.012, [0, 114, 178]),
+                Solid::new(Form::Ellipsoid([0.05; 3]), lamp, [240, 178, 122]),
+            ],
+            ..Sight::default()
+        }
     }
 }
 

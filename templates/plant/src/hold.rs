@@ -1,9 +1,10 @@
 //! The task: bring the lamp to an angle and hold it there, with as little motor as possible.
 
-use hwasp_core::{CommandPort, Dimension, EnvSpec, Plant, Port, Stream, Task};
+use hwasp_core::{CommandPort, Cord, Dimension, EnvSpec, Plant, Port, Sight, Stream, Task};
 use rand::RngExt;
 
-use crate::arm::{Arm, TIME_STEP};
+use crate::arm::{Arm, PIVOT, TIME_STEP};
+use crate::spring::{ANCHOR, HOOK};
 
 /// What the motor gives at most, of either sign, N·m: not enough to hold the level arm without a spring.
 const MOTOR_LIMIT: f64 = 1.5;
@@ -52,5 +53,15 @@ impl Task for Hold {
     /// The motor that holds what the spring does not costs as much as being far off.
     fn reward(&mut self, arm: &Arm, command: &[f64]) -> f64 {
         1.0 - (arm.angle() - self.goal).powi(2) - (command[0] / MOTOR_LIMIT).powi(2)
+    }
+
+    /// What films show: the arm and its spring, m. Without this method there are none.
+    fn look(&mut self, arm: &Arm) -> Option<Sight> {
+        let (sin, cos) = arm.angle().sin_cos();
+        let ends = [[0.0, 0.0, PIVOT + ANCHOR], [HOOK * sin, 0.0, PIVOT + HOOK * cos]];
+        let mut sight = arm.sight();
+        sight.cords.push(Cord::spring(ends, [0.01, 0.0, 0.0], 11, [213, 94, 0]));
+        sight.told = format!("{:.0}° from upright", arm.angle().to_degrees());
+        Some(sight)
     }
 }

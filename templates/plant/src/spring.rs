@@ -19,9 +19,9 @@ use hwasp_diff::Scalar;
 use crate::arm::GRAVITY_MOMENT;
 
 /// Height of the spring's anchor above the pivot, m.
-const ANCHOR: f64 = 0.05;
+pub(crate) const ANCHOR: f64 = 0.05;
 /// Where the spring hooks into the arm, m from the pivot.
-const HOOK: f64 = 0.1;
+pub(crate) const HOOK: f64 = 0.1;
 
 /// A motor at the pivot, beside a spring of free length zero.
 pub(crate) struct Spring {

@@ -3,19 +3,23 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use super::parse::{MOST_SEEDS, MOST_STEPS, finite, path, threads, whole};
+use super::parse::{LAST_SEED, MOST_SEEDS, MOST_STEPS, finite, path, threads, whole};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct CompareArgs {
     /// A name from `hwasp list`, or the path of a TOML file
     pub(crate) experiment: String,
     /// Methods, separated by commas; fixed:middle, fixed:random, fixed:"2 N/m" and fixed:'{gear = 70, shank = "0.5 m"}' say where
-    /// hardware stays that is fixed
-    #[arg(long, default_value = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed")]
+    /// hardware stays that is fixed; parameters that are not named stay where they begin
+    /// [default: hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed; fixed,cmaes,ars where nothing is designed]
+    #[arg(long)]
     pub(crate) methods: Vec<String>,
-    /// Seeds of each method, from 0
+    /// Seeds of each method, one after the other
     #[arg(long, default_value = "5", allow_negative_numbers = true, value_parser = whole(1..=MOST_SEEDS))]
     pub(crate) seeds: u64,
+    /// The first of them
+    #[arg(long, value_name = "SEED", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED - MOST_SEEDS))]
+    pub(crate) first_seed: u64,
     /// Real simulator steps of each training [default: what the experiment says]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = whole(1..=MOST_STEPS))]
     pub(crate) env_steps: Option<u64>,

@@ -1,5 +1,6 @@
 //! `hwasp design` of an experiment, or with `--at`: what another design changes of the model.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use hwasp_core::{DesignSpace, Initial, parse_quantity};
@@ -106,6 +107,7 @@ fn ends(assembly: &Assembly, base: &[f64]) -> Vec<Pair> {
 fn asked(space: &DesignSpace, base: &[f64], at: &[String]) -> Result<Pair, Failure> {
     let mut after = base.to_vec();
     let mut what = Vec::new();
+    let mut seen = BTreeSet::new();
     for text in at {
         let wrong =
             |message: String, hint: &str| Failure::input(format!("--at {}: {message}", shorten(text, 60))).hint(hint);
@@ -128,6 +130,9 @@ fn asked(space: &DesignSpace, base: &[f64], at: &[String]) -> Result<Pair, Failu
             return Err(wrong(format!("`{}` is no design parameter", shorten(name, 60)), &hint));
         };
         let group = &groups[place];
+        if !seen.insert(name) {
+            return Err(wrong(format!("`{name}` is given twice"), "leave one of them out"));
+        }
         let middle = with_unit(0.5 * (group.lo + group.hi), group.dimension);
         let si = parse_quantity(value.trim_matches('"'), group.dimension)
             .map_err(|error| wrong(error.to_string(), &format!("write it like --at {name}=\"{middle}\"")))?;

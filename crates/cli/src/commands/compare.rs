@@ -1,6 +1,6 @@
 //! `hwasp compare`.
 
-use hwasp_experiment::Catalogue;
+use hwasp_experiment::{Catalogue, resolve};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,14 +16,24 @@ use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
 use crate::output;
 
+/// What is compared where nobody says what.
+const METHODS: &str = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed";
+/// The same where nothing is designed: the other methods would train the same, or have nothing to search.
+const UNDESIGNED: &str = "fixed,cmaes,ars";
+
 pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failure> {
-    let contenders = args.methods.iter().map(|text| Contender::parse_list(text)).collect::<Result<Vec<_>, _>>();
-    let contenders = contenders.map_err(Failure::input)?.concat();
+    let asked = args.methods.iter().map(|text| Contender::parse_list(text)).collect::<Result<Vec<_>, _>>();
+    let mut contenders = asked.map_err(Failure::input)?.concat();
     let further: Vec<_> = args.env_steps.map(|steps| ("env-steps", steps.to_string())).into_iter().collect();
     let layers = layers(&args.experiment, &args.set, &further, catalogue)?;
+    if contenders.is_empty() {
+        let experiment = resolve(layers.clone(), None, catalogue).map_err(Failure::input)?;
+        let all = if experiment.task.groups().is_empty() { UNDESIGNED } else { METHODS };
+        contenders = Contender::parse_list(all).map_err(Failure::input)?;
+    }
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
-    let grid = Grid { layers, contenders, seeds: 0..args.seeds };
+    let grid = Grid { layers, contenders, seeds: args.first_seed..args.first_seed + args.seeds };
     let ran = run_grid(&grid, catalogue, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?;
     if !args.quiet {
         output::print(&ran.text)?;

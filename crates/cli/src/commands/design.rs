@@ -1,6 +1,8 @@
 //! `hwasp design`.
 
 use hwasp_experiment::Catalogue;
+use hwasp_settings::nearest;
+use hwasp_settings::text::shorten;
 use hwasp_workshop::design::{DesignReport, write_closing};
 
 use super::{changes, run_folder};
@@ -16,6 +18,16 @@ pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failur
     };
     if experiment && (!path.is_dir() || !args.at.is_empty()) {
         return changes::run(args, catalogue);
+    }
+    if !path.exists() {
+        let name = path.to_string_lossy();
+        let known = || catalogue.presets().into_iter().map(|preset| preset.name);
+        let hint = match nearest(&name, known()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a folder that `hwasp train` has written, an experiment of `hwasp list`, or a file that ends in .toml".into(),
+        };
+        let message = format!("there is neither a run nor an experiment `{}`", shorten(&name, 120));
+        return Err(Failure::input(message).hint(&hint));
     }
     let report = DesignReport::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;
     if args.out.is_some() && report.hand.is_none() {

@@ -36,7 +36,10 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
         output::print(&under)?;
     }
     let page = play::page(saved.assembly(), &params, &options, &title).map_err(|error| match error {
-        error @ (PlayError::Unseen { .. } | PlayError::Assemble(_)) => Failure::input(error),
+        error @ PlayError::Unseen { .. } => {
+            Failure::input(error).hint("write the method `look` of its task, as docs/own_mechanism.md shows")
+        }
+        error @ PlayError::Assemble(_) => Failure::input(error),
         error => error.into(),
     })?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join("play"));

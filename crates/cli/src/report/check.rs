@@ -6,7 +6,7 @@ use hwasp_core::{Dimension, EnvFault, EnvSpec, MADE_FROM, Policy, Port};
 use hwasp_experiment::Experiment;
 use hwasp_problem::{Role, Words};
 use hwasp_runs::text::{ReadableUnit, grouped};
-use hwasp_training::{Assembly, Trial};
+use hwasp_training::{AT_ONCE, Assembly, Trial};
 
 /// The most ports that are told.
 const MOST_PORTS: usize = 12;
@@ -23,14 +23,15 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly, trial: &Trial) 
         drawn => format!(", {drawn} of them drawn once an episode"),
     };
     let mut text = format!(
-        "{} ({}) is sound\n  problem     {}, {design} design parameter{}{drawn}\n  policy      {} parameters, action: {}\n  \
+        "{} ({}) is sound\n  problem     {}, {design} design parameter{}{drawn}\n  policy      {} parameters; {} {}\n  \
          training    {} steps: {}\n",
         spec.name,
         spec.method.name(),
         spec.task.name(),
         if design == 1 { "" } else { "s" },
         policy.param_count(),
-        shorten(policy.action_names()),
+        if assembly.generation().is_some() { "it gives" } else { "training varies" },
+        varied(policy.action_names(), &assembly.worlds.training.env, &policy.space().names()),
         grouped(spec.train.env_steps),
         training(spec, assembly, trial),
     );
@@ -41,7 +42,7 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly, trial: &Trial) 
 
 /// What the controller sees and gives, what is designed and what is rewarded.
 fn world(text: &mut String, env: &EnvSpec, words: &Words, assembly: &Assembly) {
-    let named = |port: &Port| format!("{} {}", port.name, port.dimension.si()).trim_end().to_owned();
+    let named = |port: &Port| with_unit(&port.name, port.dimension.si());
     line(text, "observed", &format!("{}: {}", env.observation.len(), listed(&together(&env.observation))));
     let command = |port: &hwasp_core::CommandPort| {
         let unit = port.dimension.si();
@@ -68,6 +69,10 @@ fn world(text: &mut String, env: &EnvSpec, words: &Words, assembly: &Assembly) {
     for (_, name, formula) in words.ports.iter().filter(|(role, ..)| *role == Role::Reward) {
         line(text, "reward", &format!("{name} = {formula}"));
     }
+    for (_, name, formula) in words.ports.iter().filter(|(role, ..)| *role == Role::End) {
+        let named = if name.is_empty() { String::new() } else { format!("{name}: ") };
+        line(text, "ends", &format!("{named}{formula}"));
+    }
 }
 
 /// A line with a title; further lines of one title leave it out.
@@ -86,7 +91,11 @@ fn tried(text: &mut String, assembly: &Assembly, trial: &Trial) {
     line(text, "time", &format!("{times} (measured now, with one thread)"));
     let ended = match trial.ended {
         0 => format!("none of {} ended before step {}", trial.episodes, trial.most_steps),
-        ended => format!("{ended} of {} ended, after {:.1} steps in the mean", trial.episodes, trial.mean_steps()),
+        ended => {
+            let named: Vec<String> = trial.ended_by.iter().map(|(name, count)| format!("{name} {count}")).collect();
+            let by = if named.is_empty() { String::new() } else { format!(" ({})", named.join(", ")) };
+            format!("{ended} of {} ended{by}, after {:.1} steps in the mean", trial.episodes, trial.mean_steps())
+        }
     };
     line(text, "tried", &format!("episodes with random commands and designs: {ended}"));
     let mut warn = |what: String| {
@@ -106,6 +115,13 @@ fn tried(text: &mut String, assembly: &Assembly, trial: &Trial) {
              that\ndraw those once an episode (design.placements, or --method episode) to have it count"
                 .to_owned(),
         );
+    }
+    let built = assembly.experiment().task.built();
+    if trial.is_over_at_once() {
+        warn(over_at_once(trial));
+    }
+    for doubt in built.mechanism.iter().flat_map(|mechanism| mechanism.doubts()) {
+        warn(doubt);
     }
     if trial.fixed_start {
         warn("every episode starts alike: a controller may learn the one start by heart".to_owned());
@@ -131,6 +147,18 @@ fn tried(text: &mut String, assembly: &Assembly, trial: &Trial) {
             train.episode_steps
         ));
     }
+}
+
+/// Of episodes that end as they begin.
+fn over_at_once(trial: &Trial) -> String {
+    let names: Vec<&str> = trial.ended_by.keys().map(String::as_str).collect();
+    let cause = if names.is_empty() { String::new() } else { format!(", by {}", names.join(", ")) };
+    let count = trial.at_once;
+    format!(
+        "{count} of {} episodes ended within {AT_ONCE} steps{cause}\nnothing is learned of what is over as it begins: see whether \
+         that holds at the start already (task.start), and what its numbers measure",
+        trial.episodes
+    )
 }
 
 /// The parts of a training.
@@ -188,15 +216,39 @@ fn together(ports: &[Port]) -> Vec<String> {
     }
     let shown = |(stem, unit, count): (&str, &str, usize)| {
         let times = if count == 1 { String::new() } else { format!(" ({count} components)") };
-        format!("{stem}{times} {unit}").trim_end().to_owned()
+        with_unit(&format!("{stem}{times}"), unit)
     };
     told.into_iter().map(shown).collect()
+}
+
+/// A name with what it is measured in.
+fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} in {unit}") }
 }
 
 /// Ports, of many the first ones.
 fn listed(ports: &[String]) -> String {
     let shown = ports.iter().take(MOST_PORTS).map(String::as_str).collect::<Vec<_>>().join(", ");
     if ports.len() > MOST_PORTS { format!("{shown}, and {} more", ports.len() - MOST_PORTS) } else { shown }
+}
+
+/// The components of an action by what they are: a command and an effort may be called alike.
+fn varied(action: &[String], env: &EnvSpec, design: &[String]) -> String {
+    let mut parts: [(&str, Vec<String>); 3] = [("design", vec![]), ("effort", vec![]), ("command", vec![])];
+    for name in action {
+        // In this order they stand in an action, so that what was a command is none of the others afterwards.
+        let effort = env.effort.iter().any(|port| port.name == *name);
+        let begun =
+            |part: usize, parts: &[(&str, Vec<String>)]| parts[part..].iter().any(|(_, names)| !names.is_empty());
+        let part = match () {
+            () if design.contains(name) && !begun(1, &parts) => 0,
+            () if effort && !begun(2, &parts) => 1,
+            () => 2,
+        };
+        parts[part].1.push(name.clone());
+    }
+    let parts = parts.iter().filter(|(_, names)| !names.is_empty());
+    parts.map(|(what, names)| format!("{} ({what})", shorten(names))).collect::<Vec<_>>().join("; ")
 }
 
 /// The first few of many names.

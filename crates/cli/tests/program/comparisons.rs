@@ -94,6 +94,38 @@ fn a_table_that_cannot_be_written_is_printed() {
     assert!(sandbox.run(&format!("{line} --quiet")).stdout.is_empty());
 }
 
+#[test]
+fn seeds_begin_where_they_are_asked_to() {
+    let sandbox = Sandbox::new("compare-first-seed");
+    let line = "compare reach --methods hwasp --seeds 2 --first-seed 7 --env-steps 2400 --set train.evaluation_episodes=5 --out both";
+    assert!(sandbox.run(line).status.success());
+    let seeds = [6, 7, 8, 9].map(|seed| sandbox.path(&format!("both/cells/hwasp-seed{seed}")).is_dir());
+    assert_eq!(seeds, [false, true, true, false]);
+}
+
+/// `compare` with the methods that it has by itself was refused, for some of them search a design.
+#[test]
+#[cfg(feature = "mujoco")]
+fn a_robot_without_a_design_is_compared_too() {
+    let sandbox = Sandbox::new("compare-undesigned");
+    sandbox.write(
+        "rod.xml",
+        "<mujoco><worldbody><body><joint name='hinge'/><geom size='0.1'/></body></worldbody>\
+        <actuator><motor name='turn' joint='hinge' ctrlrange='-1 1'/></actuator></mujoco>",
+    );
+    sandbox.write(
+        "rod.toml",
+        "name = \"rod\"\n[task]\nproblem = \"model\"\nmodel = \"rod.xml\"\nhorizon = 20\n\
+        [task.reward]\nstill = \"-joint.hinge.vel^2\"\n[train]\nepisode_steps = 20\nevaluation_episodes = 2\n",
+    );
+    let output = sandbox.run("compare rod.toml --seeds 1 --env-steps 10000 --out all");
+    let table = text(&output.stdout);
+    assert!(
+        ["fixed", "cmaes", "ars"].iter().all(|method| table.contains(&format!("| {method} | 1 of 1 |"))),
+        "{output:?}"
+    );
+}
+
 /// A second comparison on the same folder ended both of them with `is in use`.
 #[test]
 fn a_second_comparison_joins_the_first() {

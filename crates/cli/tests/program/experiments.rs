@@ -37,6 +37,19 @@ fn a_sound_robot() {
     assert!(gripper.contains("[exit 0]") && gripper.contains("that shape no model"), "{gripper}");
 }
 
+/// A task that is over as it begins passed without a word, and so did a spring that shakes because its effort is held.
+#[cfg(feature = "mujoco")]
+#[test]
+fn what_would_not_train_is_warned_of() {
+    let sandbox = Sandbox::new("check-doubts");
+    let over = sandbox.transcript(&["check hopper --set task.ends=time>0.01"]);
+    assert!(over.contains("8 of 8 episodes ended within 3 steps"), "{over}");
+    let shakes = sandbox.transcript(&["check five-bar --set task.frame_skip=10"]);
+    assert!(shakes.contains("warning     the law's spring on joint.front_hip has 7.500 N*m/rad"), "{shakes}");
+    let sound = sandbox.transcript(&["check five-bar", "check hopper"]);
+    assert!(!sound.contains("the law's spring") && !sound.contains("ended within"), "{sound}");
+}
+
 #[test]
 fn the_law_as_a_graph() {
     let sandbox = Sandbox::new("graph");

@@ -36,6 +36,38 @@ fn another_machine_is_no_other_world() {
     }
 }
 
+/// `eval --set task.reward.heat=0` was refused as "another machine": the term alone read the command of the knee beside the law,
+/// so that training samples it in another way. Terms, ends and success belong to the world.
+#[test]
+#[cfg(feature = "mujoco")]
+fn a_robot_is_judged_by_other_terms_and_ends() {
+    let sandbox = Sandbox::new("other-terms");
+    let short = "--set train.steps_per_iteration=400 --set train.episode_steps=100 --set train.evaluation_episodes=2";
+    let output = sandbox.run(&format!("train hopper --env-steps 800 {short} --quiet --out run"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let eval = |set: &[&str]| -> serde_json::Value {
+        let line = set.iter().fold("eval run --episodes 4 --json".to_owned(), |line, set| line + " --set " + set);
+        let output = sandbox.run(&line);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let (plain, cold) = (eval(&[]), eval(&["task.reward.heat=0"]));
+    assert_eq!(cold["terms"]["heat"], 0.0);
+    assert_eq!(cold["terms"]["forward"], plain["terms"]["forward"]);
+    let without = eval(&["task.reward={alive=1}", "task.ends={long=\"step>5\"}", "task.success=\"step>3\""]);
+    assert_eq!(without["ends"]["named"]["long"], 4);
+    assert_eq!(without["success"][0]["successes"], 4);
+}
+
+/// What `--set` changed was held against the checkpoint of a run that had not come to its end.
+#[test]
+fn a_run_without_an_end_is_judged_in_another_world() {
+    let sandbox = Sandbox::new("unfinished-judged");
+    sandbox.put_stopped_run();
+    let output = sandbox.run("eval run --episodes 2 --set task.goal=30cm");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn another_world_is_named_before_the_figures() {
     let sandbox = Sandbox::with_run("another-world");

@@ -3,11 +3,29 @@
 use crate::sandbox::Sandbox;
 
 #[test]
-fn runs_without_looks_and_folders_that_are_none() {
-    let sandbox = Sandbox::with_run("play-reach");
+fn folders_that_are_no_runs() {
+    let sandbox = Sandbox::new("play-nothing");
     sandbox.write("file", "");
-    insta::assert_snapshot!(sandbox.refused(&["play run", "play nowhere", "play file"]));
-    assert!(!sandbox.path("run/play").exists());
+    insta::assert_snapshot!(sandbox.refused(&["play nowhere", "play file"]));
+}
+
+/// The problems in Rust said nothing of how they look: there was a film of robots from models and of the hand alone.
+#[test]
+fn every_problem_is_seen() {
+    for (problem, told) in
+        [("reach", "gear "), ("pendulum", "gear "), ("mass-spring", "10 springs, "), ("bar-length", "a bar of ")]
+    {
+        let sandbox = Sandbox::new(&format!("play-{problem}"));
+        let train = format!("train {problem} --env-steps 60000 --set train.evaluation_episodes=4 --quiet --out run");
+        let train = sandbox.run(&train);
+        assert!(train.status.success(), "{}", String::from_utf8_lossy(&train.stderr));
+        assert!(sandbox.run("play run --episodes 1").status.success());
+        let film = String::from_utf8(sandbox.read("run/play/film.html")).unwrap();
+        assert!(film.contains("<figure class=\"player\"") && film.contains(&format!("episode 0: {told}")), "{problem}");
+        assert!(sandbox.run("report run").status.success());
+        let report = String::from_utf8(sandbox.read("run/report.html")).unwrap();
+        assert!(report.contains("The best and the worst") && report.contains(told), "{problem}");
+    }
 }
 
 /// A robot from a model: trained, filmed, judged with a faster law, and asked for tendons that it does not have.

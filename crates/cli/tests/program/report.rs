@@ -178,7 +178,7 @@ fn names_from_strangers_are_text() {
     sandbox.replace("run/summary.json", "\"experiment\": \"reach\"", &format!("\"experiment\": \"{evil}\""));
     sandbox.replace("run/provenance.json", "\"train\",", "\"train\", \"</code><script>\",");
     let html = report(&sandbox, "run");
-    assert_eq!(html.matches("<script").count(), 1, "that of the page");
+    assert_eq!(html.matches("<script").count(), 2, "that of the page, and the film's data");
     assert!(html.contains("&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt;") && !html.contains("<b "));
 }
 

@@ -305,6 +305,7 @@ impl<'p> Lanes<'p> {
                 undiscounted_return: discounted(rewards, 1.0),
                 steps,
                 end,
+                ended_by: if end == End::Terminated { environment.ended_by() } else { None },
                 outcome: environment.outcome(),
                 terms: environment.terms().to_vec(),
             })

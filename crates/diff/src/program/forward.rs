@@ -4,7 +4,7 @@ use pulp::NullaryFnOnce;
 
 use super::lanes::{Operand, Rows, map1, map2};
 use super::tape::Values;
-use super::{Instruction, Program, ProgramTape, check_batch};
+use super::{Instruction, Program, ProgramTape, Slot, check_batch};
 use crate::Float;
 use crate::ops::{Binary, Unary, with_binary, with_unary};
 
@@ -48,6 +48,9 @@ impl<F: Float> NullaryFnOnce for Forward<'_, F> {
 
     #[inline(always)]
     fn call(self) {
+        if self.tape.rows == 1 {
+            return self.one_row();
+        }
         let Self { program, columns, column_stride, tape, out, out_stride } = self;
         let (rows, stride) = (tape.rows, tape.stride);
         for (k, instruction) in program.row_code.iter().enumerate() {
@@ -89,6 +92,33 @@ impl<F: Float> NullaryFnOnce for Forward<'_, F> {
                 Operand::Same(value) => out.fill(value.0),
                 Operand::Rows(Rows(value)) => out.copy_from_slice(value),
             }
+        }
+    }
+}
+
+impl<F: Float> Forward<'_, F> {
+    /// The same of one row, as the simulator runs laws and formulas: with no loop over rows an instruction is a few loads and the
+    /// operation.
+    #[inline(always)]
+    fn one_row(self) {
+        let Self { program, columns, column_stride, tape, out, out_stride } = self;
+        let (constants, uniforms, stride) = (&tape.constants[..], &tape.uniforms[..], tape.stride);
+        let value = |slot: Slot, registers: &[F]| match slot {
+            Slot::Constant(c) => constants[c],
+            Slot::Uniform(u) => uniforms[u],
+            Slot::Column(c) => columns[c * column_stride],
+            Slot::Register(r) => registers[r * stride],
+        };
+        for (k, instruction) in program.row_code.iter().enumerate() {
+            let registers = &tape.registers;
+            let result = match *instruction {
+                Instruction::Unary(op, a) => op.value(value(a, registers)),
+                Instruction::Binary(op, a, b) => op.value(value(a, registers), value(b, registers)),
+            };
+            tape.registers[k * stride] = result;
+        }
+        for (o, &slot) in program.outputs.iter().enumerate() {
+            out[o * out_stride] = value(slot, &tape.registers);
         }
     }
 }

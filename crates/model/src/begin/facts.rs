@@ -3,6 +3,7 @@
 use hwasp_mujoco::engine::{BodyId, Drive, Files, Inventory, JointType, Simulation, Spec};
 use hwasp_problem::AnyError;
 
+use super::close::close;
 use super::told;
 use crate::anatomy::Anatomy;
 use crate::robot::Additions;
@@ -21,6 +22,8 @@ pub(super) struct Facts {
     pub(super) keyframe: Option<String>,
     /// Where the base is put so that the robot stands on the floor that was added: its coordinate and m.
     pub(super) lifted: Option<(usize, f64)>,
+    /// Coordinates that were put where the model's loops are closed.
+    pub(super) closing: Vec<usize>,
     pub(super) simulation: Simulation,
     /// Whether an actuator drives the joint.
     pub(super) driven: Vec<bool>,
@@ -46,11 +49,16 @@ impl Facts {
             simulation.ctrl_mut().fill(0.0);
         }
         let lifted = if additions.free_base { stand(&mut simulation, &has) } else { None };
-        simulation.forward().map_err(|fault| {
-            told(&format!("the model cannot be simulated at its start: {fault}"), "see that it simulates by itself")
-        })?;
+        let sound = |simulation: &mut Simulation| {
+            simulation.forward().map_err(|fault| {
+                told(&format!("the model cannot be simulated at its start: {fault}"), "see that it simulates by itself")
+            })
+        };
+        sound(&mut simulation)?;
+        let closing = close(&mut spec, &mut simulation);
+        sound(&mut simulation)?;
         let (driven, moved) = driven(&simulation, &has);
-        Ok(Self { additions, spec, anatomy, has, keyframe, lifted, simulation, driven, moved })
+        Ok(Self { additions, spec, anatomy, has, keyframe, lifted, closing, simulation, driven, moved })
     }
 
     /// Whether a body is `of` or belongs to it.
@@ -153,8 +161,18 @@ fn additions(spec: &Spec, mut bare: Simulation, main: &str) -> Result<Additions,
         additions.motors.push((name.clone(), gear, [-1.0, 1.0]));
     }
     if additions.motors.is_empty() {
-        let hint = "add actuators to the model, or give its hinges and slides names";
-        return Err(told(&format!("nothing drives {main}: it has no actuator, and no joint for a motor"), hint));
+        let single =
+            |joint: &hwasp_mujoco::engine::JointEntry| matches!(joint.kind, JointType::Hinge | JointType::Slide);
+        let (lack, hint) = if has.joints.iter().any(single) {
+            ("and no joint with a name for a motor", "give its hinges and slides names, or add actuators to the model")
+        } else {
+            (
+                "and motors are added to hinges and slides, of which it has none",
+                "add actuators to the model: <motor site=\"…\" gear=\"0 0 1 0 0 0\"/> pushes at a place, <motor joint=\"…\" \
+                 gear=\"1 0 0\"/> turns a ball about an axis",
+            )
+        };
+        return Err(told(&format!("nothing drives {main}: it has no actuator, {lack}"), hint));
     }
     // Only models without actuators come this far, as URDF are: of a robot with one base, limbs make legs or wheels of it.
     let bases: Vec<BodyId> =

@@ -250,7 +250,7 @@ fn goal(facts: &Facts, text: &mut String) {
     let _ = write!(text, "\n[task.random] # drawn when an episode starts\ngoal = {drawn}\n");
 }
 
-/// Where episodes start: near the model's own start, a target anywhere in the middle of its range, a lifted base on the floor.
+/// Where episodes start: near the model's own start, loops closed, a target anywhere in the middle of its range, a lifted base on the floor.
 fn starts(facts: &Facts, purpose: &Purpose, text: &mut String) {
     text.push_str("\n[task.start]\n");
     let mut apart: Vec<(usize, String, String)> = Vec::new();
@@ -268,22 +268,34 @@ fn starts(facts: &Facts, purpose: &Purpose, text: &mut String) {
             apart.push((joint.address.qpos.start, format!("{}.pos", facts.word("joint", i)), drawn));
         }
     }
+    for &at in &facts.closing {
+        let found = facts.has.joints.iter().position(|joint| joint.address.qpos == (at..at + 1));
+        let name = found.map_or_else(|| format!("qpos[{at}]"), |joint| format!("{}.pos", facts.word("joint", joint)));
+        if apart.iter().all(|(other, ..)| *other != at) {
+            apart.push((at, name, show(digits(facts.simulation.qpos()[at], 7))));
+        }
+    }
     let near = if let Purpose::Reach { .. } = purpose { 0.1 } else { 0.01 };
     let without: Vec<usize> = apart.iter().map(|(at, ..)| *at).collect();
     for run in runs(facts, &without) {
         let _ = writeln!(text, "{} = {}", quoted(&run), quoted(&format!("{run} + uniform(-{near}, {near})")));
     }
-    for (_, name, value) in apart {
-        let _ = writeln!(text, "{} = {}", quoted(&name), quoted(&value));
+    for (at, name, value) in apart {
+        let about = if facts.closing.contains(&at) { " # where the model's loops are closed" } else { "" };
+        let _ = writeln!(text, "{} = {}{about}", quoted(&name), quoted(&value));
     }
     text.push_str("\"joint.*.vel\" = \"uniform(-0.01, 0.01)\"\n");
 }
 
-/// A law and a design for the first joint that is driven, as comments: a spring beside its motor, and the motor's gear.
+/// A law and a design for the first joint that is driven, a hinge where there is one, as comments: a spring beside its motor, and the motor's gear.
 fn design(facts: &Facts, text: &mut String) {
-    let single = |joint: usize| matches!(facts.has.joints[joint].kind, JointType::Hinge | JointType::Slide);
-    let motor =
-        facts.has.actuators.iter().position(|actuator| matches!(actuator.drives, Drive::Joint(j, _) if single(j)));
+    let is = |joint: usize, kind: JointType| facts.has.joints[joint].kind == kind;
+    let single = |joint: usize| is(joint, JointType::Hinge) || is(joint, JointType::Slide);
+    let driving = |kind: JointType| {
+        let drives = |drive: &Drive| matches!(drive, Drive::Joint(joint, _) if is(*joint, kind));
+        facts.has.actuators.iter().position(|actuator| drives(&actuator.drives))
+    };
+    let motor = driving(JointType::Hinge).or_else(|| driving(JointType::Slide));
     let joint = match motor.map(|motor| &facts.has.actuators[motor].drives) {
         Some(Drive::Joint(joint, _)) => Some(*joint),
         _ => (0..facts.has.joints.len()).find(|&joint| facts.driven[joint] && single(joint)),

@@ -64,23 +64,54 @@ impl Compiler<'_, '_> {
         }
         left.retain(|definition| !self.defined.iter().any(|key| key == definition.key));
         if !tells {
+            self.names.faulty.pending = left.iter().map(|definition| definition.name().to_owned()).collect();
             return;
         }
-        for definition in &left {
-            let Err(mut error) = self.define(definition) else { continue };
-            if let Some(other) = left.iter().find(|other| other.is_missing(&error)) {
-                let (name, other) = (definition.name(), other.name());
-                (error.message, error.hint) = if name == other {
+        self.names.faulty.pending.clear();
+        let roots = self.tell_definitions(&left);
+        self.tell_waiting(roots);
+    }
+
+    /// Tells what is wrong with definitions, each fault once: what names a faulty one has none of its own, and a circle is told
+    /// where it begins. How many were told.
+    fn tell_definitions(&mut self, left: &[Definition<'_>]) -> usize {
+        let mut errors: Vec<Option<ExprError>> = Vec::new();
+        for definition in left {
+            self.names.faulty.take();
+            let error = self.define(definition).err();
+            let follows = self.names.faulty.take().is_some();
+            errors.push(error.filter(|_| !follows));
+        }
+        let next = |at: usize| left.iter().position(|other| errors[at].as_ref().is_some_and(|e| other.is_missing(e)));
+        let mut roots = 0;
+        for (at, definition) in left.iter().enumerate() {
+            self.sound = false;
+            let Some(error) = &errors[at] else { continue };
+            let mut error = error.clone();
+            let mut circle = vec![at];
+            while let Some(other) = next(circle[circle.len() - 1]).filter(|other| !circle.contains(other)) {
+                circle.push(other);
+            }
+            let last = next(circle[circle.len() - 1]);
+            if circle.len() > 1 || last.is_some() {
+                // It leads to a fault, into a circle, or stands in one that is told at its first.
+                if last != Some(at) || circle.iter().any(|other| *other < at) {
+                    continue;
+                }
+                let names: Vec<&str> = circle.iter().chain([&at]).map(|&at| left[at].name()).collect();
+                (error.message, error.hint) = if circle.len() == 1 {
                     let hint = "a law has as many operations at every moment: write the steps out";
-                    (format!("`{name}` names itself"), Some(hint.to_owned()))
+                    (format!("`{}` names itself", definition.name()), Some(hint.to_owned()))
                 } else {
-                    let message = format!("`{other}` is itself wrong, or leads back to `{name}`");
+                    let message = format!("`{}` leads back to itself: {}", definition.name(), names.join(", "));
                     (message, Some("a definition can name those that do not name it".to_owned()))
                 };
             }
             tell(self.section, &["define", definition.key], 0, &error);
-            self.sound = false;
+            roots += 1;
         }
+        self.names.faulty.own.extend(left.iter().map(|definition| definition.name().to_owned()));
+        roots
     }
 
     /// What a key and its text say, where both can be used; else the fault is told.

@@ -7,6 +7,7 @@ use hwasp_settings::text::{column_fault, shorten};
 
 use super::{Compiler, HORIZON, MOST_OBSERVED};
 use crate::columns::{Column, Reading};
+use crate::delay::{DELAYS, Delay};
 use crate::names::{InPlace, Place};
 use crate::texts::Named;
 
@@ -39,9 +40,11 @@ impl Compiler<'_, '_> {
 
     /// The positions and velocities that a key of `start` names.
     pub(super) fn start_places(&mut self, key: &str) -> Option<Vec<Reading>> {
+        self.names.faulty.take();
         let mut scope = InPlace { names: &mut self.names, place: Place::Start, width: 1 };
         let value = match self.formulas.read(key, &mut scope) {
             Ok(value) => value,
+            Err(error) if self.follows(&error, &["start", key], 0) => return None,
             Err(error) => {
                 let hint = error.hint.unwrap_or_else(|| "a start is of joint.NAME.pos or joint.NAME.vel".to_owned());
                 self.refuse(&["start", key], format!("`{key}`: {}", error.message), Some(hint));
@@ -72,14 +75,15 @@ impl Compiler<'_, '_> {
         let mut observed = Vec::new();
         for (i, text) in observe.iter().enumerate() {
             if let Some(value) = self.read(&["observe", &i.to_string()], text, 0, Place::Step, 1) {
-                observed.push((text.clone(), value));
+                let ports = self.called(text, &value);
+                observed.push((ports, value));
             }
         }
         let count: usize = observed.iter().map(|(_, value)| value.parts.len()).sum();
         if count > MOST_OBSERVED {
             self.refuse(&["observe"], format!("{count} values are observed, more than {MOST_OBSERVED}"), None);
         }
-        if settings.reward.is_empty() {
+        if settings.reward.is_empty() && self.entries("reward").is_empty() {
             let hint = "write [task.reward] with terms: forward = \"joint.root.vel\"";
             self.refuse(&["reward"], "the reward has no term", Some(hint.into()));
         }
@@ -90,23 +94,26 @@ impl Compiler<'_, '_> {
         for (name, _) in &settings.reward {
             if let Some(why) = column_fault(name) {
                 let message = format!("a term cannot be called `{}`", shorten(name, 60));
-                self.refuse(&["reward", name], message, Some(format!("it has a curve of its name: {why}")));
+                self.note(&["reward", name], message, Some(format!("it has a curve of its name: {why}")));
             }
         }
         let terms = self.each("reward", &settings.reward);
         let kinds = self.each("kinds", &settings.kinds).into_iter().map(|(_, part)| part).collect();
-        let mut one = |key: &str, text: &str| {
-            if text.is_empty() { None } else { self.scalar(&[key], text, Place::Step).map(|(part, _)| part) }
+        let ends = self.each("ends", &settings.ends);
+        let success = match &*settings.success {
+            "" => None,
+            text => self.scalar(&["success"], text, Place::Step).map(|(part, _)| part),
         };
-        let (ends, success) = (one("ends", &settings.ends), one("success", &settings.success));
         Watched { observed, terms, ends, success, kinds }
     }
 
-    /// Scalars by name.
+    /// Scalars by name; one without a name stands in the place of the table.
     pub(super) fn each(&mut self, table: &str, texts: &Named) -> Vec<(String, Part)> {
         let mut parts = Vec::new();
         for (name, text) in texts {
-            if let Some((part, _)) = self.scalar(&[table, name], text, Place::Step) {
+            let keys = [table, name];
+            let keys = if name.is_empty() { &keys[..1] } else { &keys };
+            if let Some((part, _)) = self.scalar(keys, text, Place::Step) {
                 parts.push((name.clone(), part));
             }
         }
@@ -144,13 +151,15 @@ impl Compiler<'_, '_> {
 
     pub(super) fn delays(&mut self) -> Option<Vec<Part>> {
         let settings = self.settings;
-        let texts = [("observation_delay", &settings.observation_delay), ("command_delay", &settings.command_delay)];
-        if texts.iter().all(|(_, text)| text.is_empty()) {
+        let texts = [&settings.observation_delay, &settings.command_delay];
+        if texts.iter().all(|text| text.is_empty()) {
             return None;
         }
         let zero = self.formulas.constant(0.0);
         Some(
-            texts
+            DELAYS
+                .into_iter()
+                .zip(texts)
                 .map(|(key, text)| {
                     if text.is_empty() {
                         return zero;
@@ -162,31 +171,25 @@ impl Compiler<'_, '_> {
                             format!("a delay is a time, and this is {quantity}"),
                             Some("write it 20 ms".into()),
                         );
+                    } else if let Some(time) = self.formulas.known(part)
+                        && let Err(message) = Delay::steps(time, self.names.time_step)
+                    {
+                        let hint = "a delay is kept in whole steps of the environment; 0 s is none";
+                        self.refuse(&[key], message, Some(hint.into()));
                     }
                     part
                 })
-                .to_vec(),
+                .collect(),
         )
     }
 
     /// What the environment is from outside.
-    pub(super) fn env(&mut self, observed: &[(String, Value)], law: &Law) -> EnvSpec {
+    pub(super) fn env(&mut self, observed: &[(Vec<Port>, Value)], law: &Law) -> EnvSpec {
         let settings = self.settings;
         let named = |quantity: Quantity| quantity.dimension().unwrap_or(Dimension::None);
         let columns = self.names.columns.clone();
         let read = |at: usize| Port { name: columns.names()[at].clone(), dimension: columns.dimension(at) };
-        let mut observation = Vec::new();
-        for (text, value) in observed {
-            for (i, &part) in value.parts.iter().enumerate() {
-                observation.push(if let Some(at) = self.formulas.as_column(part) {
-                    read(at)
-                } else {
-                    let text = shorten(text, 60);
-                    let name = if value.parts.len() > 1 { format!("{text} [{i}]") } else { text };
-                    Port { name, dimension: named(value.quantity) }
-                });
-            }
-        }
+        let observation = observed.iter().flat_map(|(ports, _)| ports.clone()).collect();
         let commands = self.names.commands.clone();
         let mut command = Vec::new();
         for (name, quantity) in &commands {
@@ -195,11 +198,8 @@ impl Compiler<'_, '_> {
             let limits = declared
                 .map(|declared| [declared.limits.low.value, declared.limits.high.value])
                 .or_else(|| of_model.and_then(|actuator| actuator.limits));
-            let [lo, hi] = limits.unwrap_or_else(|| {
-                let hint = format!("write commands = {{ \"{name}\" = {{ limits = [-1, 1] }} }}");
-                self.refuse(&["commands"], format!("nobody limits the command `{name}`"), Some(hint));
-                [-1.0, 1.0]
-            });
+            // Where there are none, that was told.
+            let [lo, hi] = limits.unwrap_or([-1.0, 1.0]);
             command.push(CommandPort { name: name.clone(), dimension: named(*quantity), lo, hi, direct: true });
         }
         let state = law.ports().state.iter().map(|name| {
@@ -227,11 +227,12 @@ pub(super) type Pushes = Vec<(usize, usize)>;
 
 /// What is computed after a step.
 pub(super) struct Watched {
-    /// What is seen, by the text of its formula.
-    pub(super) observed: Vec<(String, Value)>,
+    /// What is seen, with what its components are called.
+    pub(super) observed: Vec<(Vec<Port>, Value)>,
     /// Terms of the reward, by name.
     pub(super) terms: Vec<(String, Part)>,
-    pub(super) ends: Option<Part>,
+    /// When an episode ends, by name.
+    pub(super) ends: Vec<(String, Part)>,
     pub(super) success: Option<Part>,
     pub(super) kinds: Vec<Part>,
 }

@@ -23,7 +23,10 @@ impl Compiler<'_, '_> {
                     self.names.efforts.push((name.clone(), quantity));
                     targets.push((name.clone(), target, dimension));
                 }
-                Err((message, hint)) => self.refuse(&["law", name], message, Some(hint)),
+                Err((message, hint)) => {
+                    self.names.faulty.ports = true;
+                    self.refuse(&["law", name], message, Some(hint));
+                }
             }
         }
         targets
@@ -51,10 +54,22 @@ impl Compiler<'_, '_> {
             }
             direct.push(actuator.filter(|_| !taken && !by_law));
             self.names.commands.push((name.clone(), quantity(&name)));
+            let limited = actuator.is_some_and(|i| self.names.anatomy.actuators[i].limits.is_some());
+            if !limited && !declared.contains(&name.as_str()) {
+                let hint = format!("write commands = {{ \"{name}\" = {{ limits = [-1, 1] }} }}");
+                self.refuse(&["commands"], format!("nobody limits the command `{name}`"), Some(hint));
+            }
         }
         if self.names.commands.is_empty() {
+            self.names.faulty.ports = true;
             let message = "nothing is commanded: the model has no actuator, and [task.commands] names none".to_owned();
-            self.refuse(&["commands"], message, Some("add motors = { JOINT = { limits = [-1, 1] } }".into()));
+            let single = self.names.anatomy.joints.iter().any(|joint| joint.dof.len() == 1);
+            let hint = if single {
+                "add motors = { JOINT = { limits = [-1, 1] } }"
+            } else {
+                "motors are added to hinges and slides, of which the model has none: add actuators to its file, on sites or balls"
+            };
+            self.refuse(&["commands"], message, Some(hint.into()));
         }
         direct
     }
@@ -64,6 +79,7 @@ impl Compiler<'_, '_> {
         let names = Names {
             anatomy: self.names.anatomy.clone(),
             columns: self.names.columns.clone(),
+            faulty: self.names.faulty.clone(),
             commands: candidates.iter().map(|name| (name.clone(), Quantity::Unknown)).collect(),
             efforts: self.names.efforts.clone(),
             own: self.names.own.clone(),
@@ -92,9 +108,10 @@ impl Compiler<'_, '_> {
     pub(super) fn law(&mut self) -> Vec<Part> {
         let settings = self.settings;
         let mut parts = Vec::new();
-        for (i, (name, text)) in settings.law.iter().enumerate() {
+        for (name, text) in &settings.law {
             let Some((part, quantity)) = self.scalar(&["law", name], text, Place::Law) else { continue };
-            let wanted = self.names.efforts.get(i).map_or(Quantity::Unknown, |(_, quantity)| *quantity);
+            let effort = self.names.efforts.iter().find(|(effort, _)| effort == name);
+            let wanted = effort.map_or(Quantity::Unknown, |(_, quantity)| *quantity);
             if let (Quantity::Known(a), Quantity::Known(b)) = (quantity, wanted)
                 && !a.fits(b)
             {

@@ -10,6 +10,7 @@ use crate::anatomy::measured;
 use crate::columns::Column;
 use crate::names::{OwnName, Place};
 use crate::parameter::name_fault;
+use crate::reference::TIME_STEP;
 use crate::texts::tell_at;
 
 impl Compiler<'_, '_> {
@@ -36,6 +37,25 @@ impl Compiler<'_, '_> {
                 None
             }
         }
+    }
+
+    /// Notes the names whose entries could not be read, which was told: what names them is not told again.
+    pub(super) fn unread(&mut self) {
+        let settings = self.settings;
+        for (table, read) in [("random", &settings.random), ("define", &settings.define)] {
+            let unread = self.entries(table).into_iter().filter(|name| read.iter().all(|(known, _)| known != name));
+            let called = unread.map(|name| name.split('(').next().unwrap_or_default().trim().to_owned());
+            self.names.faulty.own.extend(called.filter(|name| name_fault(name).is_none()));
+        }
+        for name in self.entries("design") {
+            if name_fault(&name).is_none() && settings.design.iter().all(|known| known.name != name) {
+                // A number of no known unit: what else is wrong with the formulas that name it is told.
+                let value = Value { parts: vec![self.formulas.uniform(usize::MAX)], quantity: Quantity::Unknown };
+                self.names.own.push(OwnName { name, value });
+                self.sound = false;
+            }
+        }
+        self.names.faulty.ports = self.entries("law").len() > settings.law.len();
     }
 
     /// Whether names of one's own can be called so; faults are told.
@@ -65,7 +85,10 @@ impl Compiler<'_, '_> {
             if !self.own_name("random", name) {
                 continue;
             }
-            let Some(value) = self.read(&["random", name], text, 0, Place::Model, 1) else { continue };
+            let Some(value) = self.read(&["random", name], text, 0, Place::Model, 1) else {
+                self.names.faulty.own.push(name.clone());
+                continue;
+            };
             let first = parts.len();
             parts.extend(&value.parts);
             // Those that come later see the draw itself, formulas of other places its column.
@@ -147,7 +170,7 @@ impl Compiler<'_, '_> {
             let refusal = if found.fields.contains(&field) {
                 Some("this field is set twice")
             } else {
-                (field.to_string() == "option.timestep").then_some("the time step is that of the model's file")
+                (field.to_string() == TIME_STEP).then_some("the time step is that of the model's file")
             };
             if let Some(why) = refusal {
                 tell_at(self.section, &keys, &(0..at), why, None);

@@ -85,6 +85,8 @@ pub struct JointEntry {
     pub body: BodyId,
     /// Lower and upper limit if it is limited, rad or m; of a ball joint 0 and the largest angle.
     pub range: Option<[f64; 2]>,
+    /// Linear damping of each of its degrees of freedom, N·m·s/rad or N·s/m.
+    pub damping: f64,
     /// Where it stands in the state.
     pub address: JointAddress,
 }
@@ -203,6 +205,7 @@ impl Simulation {
                 kind: joint_type(model.jnt_type()[i]),
                 body: BodyId(index(model.jnt_bodyid()[i])),
                 range: model.jnt_limited()[i].then(|| model.jnt_range()[i]),
+                damping: model.dof_damping()[index(model.jnt_dofadr()[i])],
                 address: JointAddress::of(model, i),
             }),
             geoms: entries(model, Kind::Geom, |name, i| GeomEntry {
@@ -254,7 +257,7 @@ fn entries<T>(model: &MjModel, kind: Kind, entry: impl Fn(Option<String>, usize)
     (0..count).map(|i| entry(name(model, kind, i), i)).collect()
 }
 
-fn name(model: &MjModel, kind: Kind, id: usize) -> Option<String> {
+pub(super) fn name(model: &MjModel, kind: Kind, id: usize) -> Option<String> {
     let (object, _) = objects(model, kind);
     model.id_to_name(object, id).filter(|name| !name.is_empty()).map(str::to_owned)
 }

@@ -15,6 +15,7 @@ mod edit;
 mod error;
 mod fault;
 mod files;
+mod gap;
 mod inventory;
 mod log;
 mod motion;
@@ -33,6 +34,7 @@ pub use edit::{EditError, ModelEdit};
 pub use error::BuildError;
 pub use fault::{PhysicsFault, Warning};
 pub use files::{FileError, Files};
+pub use gap::Gap;
 pub use inventory::{
     ActuatorEntry, BodyEntry, Drive, GeomEntry, Inventory, JointEntry, JointType, SensorEntry, SiteEntry, TendonEntry,
     TendonPath,

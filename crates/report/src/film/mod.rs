@@ -233,11 +233,9 @@ mod tests {
     use super::record::Moment;
     use super::*;
 
-    const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
     /// A ball that moves to the right by so much a moment, over a floor, beside a post.
     fn take(speed: f64, moments: usize, seen: fn(usize) -> Vec<&'static str>) -> Take {
-        let solid = |form, at, fixed| Solid { form, at, axes: AXES, colour: [10, 200, 30], opacity: 1.0, fixed };
+        let solid = |form, at, fixed| Solid { fixed, ..Solid::new(form, at, [10, 200, 30]) };
         let moment = |i: usize| {
             let solids = vec![
                 solid(Form::Plane([0.0; 2]), [0.0; 3], true),
@@ -251,6 +249,7 @@ mod tests {
             undiscounted_return: 2.0,
             steps: 5 * moments,
             end: End::Truncated,
+            ended_by: None,
             outcome: None,
             terms: vec![],
         };

@@ -86,8 +86,7 @@ mod tests {
     use super::*;
 
     fn solid(form: Form, at: World) -> Solid {
-        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        Solid { form, at, axes, colour: [0; 3], opacity: 1.0, fixed: false }
+        Solid::new(form, at, [0; 3])
     }
 
     /// From the south: a ball north of a long wall whose centre is nearer to the eye's plane than the ball's, and one south of it.

@@ -218,8 +218,7 @@ mod tests {
     }
 
     fn solid(form: Form) -> Solid {
-        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        Solid { form, at: [0.0; 3], axes, colour: [0; 3], opacity: 1.0, fixed: false }
+        Solid::new(form, [0.0; 3], [0; 3])
     }
 
     #[test]

@@ -86,7 +86,7 @@ pub enum PlayError {
         problem: String,
     },
     /// A problem that does not show itself.
-    #[error("nothing is to be seen of {problem}: its environment does not say how it looks (`Environment::look`)")]
+    #[error("nothing is to be seen of {problem}: its task does not say how it looks")]
     Unseen {
         /// The problem.
         problem: String,

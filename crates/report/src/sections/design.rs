@@ -22,6 +22,7 @@ pub(crate) fn section(run: &Run) -> Section {
                 (transmission(run, hand))
                 details { summary { "Each number between its limits" } (table(groups)) }
             }
+            None if groups.is_empty() => p { "Nothing is designed: the experiment has no design parameters." },
             None => (table(groups)),
         }
         @for group in groups.iter().filter(|group| (2..=MOST_BARS).contains(&group.position.len())) { (each(group)) }
@@ -60,7 +61,7 @@ fn row(report: &GroupReport) -> Markup {
     html! {
         tr {
             th scope="row" {
-                (spaced(&report.name))
+                (report.name)
                 @if count > 1 { ", total of " (count) }
             }
             td.n data-label="value" {
@@ -94,7 +95,7 @@ fn meter(position: f64) -> Markup {
 fn each(report: &GroupReport) -> Markup {
     let shown = ReadableUnit::of(&report.group);
     let values: Vec<f64> = report.group.as_built.iter().map(|value| value / shown.to_si).collect();
-    let name = spaced(&report.name);
+    let name = &report.name;
     let label = format!("{name}, each of {} ({})", values.len(), shown.unit);
     let (least, most) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let about = format!("{} values from {} to {} {}.", values.len(), decimal(least, 4), decimal(most, 4), shown.unit);

@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use crate::figure::{gallery, picture};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{decimal, mean_interval, percent, rate_interval, spaced};
+use crate::words::{decimal, mean_interval, percent, rate_interval};
 
 pub(crate) fn section(run: &Run) -> Section {
     let evaluation = &run.summary.evaluation;
@@ -23,6 +23,12 @@ pub(crate) fn section(run: &Run) -> Section {
         }
         @if !evaluation.success.is_empty() { (success(&evaluation.success)) }
         (returns(run, evaluation))
+        @if let Some(ends) = &evaluation.ends {
+            p {
+                "An episode took " (decimal(ends.mean_steps, 1)) " steps (" (decimal(ends.mean_s, 2)) " s) in the mean: "
+                (ends.to_string()) "."
+            }
+        }
     };
     Section { id: "outcome", title: "What it reaches", body }
 }
@@ -81,7 +87,7 @@ fn returns(run: &Run, evaluation: &Evaluation) -> Markup {
                     }
                 }
                 @for (term, mean) in &evaluation.terms {
-                    tr { th scope="row" { "undiscounted, of " (spaced(term)) } td.n { (decimal(*mean, 2)) } td.n { "–" } }
+                    tr { th scope="row" { "undiscounted, of " (term) } td.n { (decimal(*mean, 2)) } td.n { "–" } }
                 }
                 tr {
                     th scope="row" { "discounted, median" }

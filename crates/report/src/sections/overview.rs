@@ -3,11 +3,11 @@
 use hwasp_core::split_quantity;
 use hwasp_experiment::{Experiment, Method};
 use hwasp_runs::text::grouped;
+use hwasp_settings::written;
 use maud::{Markup, html};
 
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::spaced;
 
 pub(crate) fn section(run: &Run) -> Section {
     let spec = &run.spec;
@@ -50,6 +50,9 @@ fn method(spec: &Experiment) -> String {
 
 fn composed(spec: &Experiment, method: Method) -> String {
     let learner = spec.learner.title();
+    if spec.task.groups().is_empty() && !method.searches() {
+        return format!("Nothing is designed: policy gradients ({learner}) train the controller alone.");
+    }
     match method {
         Method::Hwasp => format!(
             "The law of the mechanism is a part of the policy, and its parameters are trained with the controller's weights by \
@@ -100,17 +103,31 @@ fn controller(spec: &Experiment) -> String {
 fn task(run: &Run) -> Markup {
     let table = run.experiment.parse::<toml::Table>().ok();
     let task = table.as_ref().and_then(|table| table.get("task")).and_then(toml::Value::as_table);
+    let usual = defaults(&run.spec);
+    // A word or a flag that nobody has asked for tells nothing; what a robot in MJCF has of a `base` is in its model.
+    let tells = |key: &String, value: &toml::Value| match value {
+        toml::Value::String(text) if text.is_empty() => false,
+        toml::Value::String(_) | toml::Value::Boolean(_) => usual.get(key) != Some(value),
+        _ => true,
+    };
     html! {
         table {
             caption { "The keys of " code { "[task]" } " in the experiment" }
             thead { tr { th scope="col" { "key" } th scope="col" { "value" } } }
             tbody {
                 @for (key, value) in task.into_iter().flatten() {
-                    @if value.as_str() != Some("") { tr { th scope="row" { (spaced(key)) } td { (told(value)) } } }
+                    @if tells(key, value) { tr { th scope="row" { (key) } td { (told(value)) } } }
                 }
             }
         }
     }
+}
+
+/// The settings of a problem of which nobody has said anything.
+fn defaults(spec: &Experiment) -> toml::Table {
+    let problem = spec.catalogue().problems().iter().find(|problem| problem.name() == spec.task.name());
+    let keys = problem.map(|problem| written(&mut *problem.defaults())).unwrap_or_default();
+    toml::Table::try_from(&keys).unwrap_or_default()
 }
 
 /// A value without the marks of its notation; tables in lines.

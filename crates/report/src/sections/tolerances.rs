@@ -7,7 +7,7 @@ use super::provenance::not_yet;
 use crate::figure::{picture, wide};
 use crate::page::Section;
 use crate::run::Run;
-use crate::words::{change, mean_interval, percent, spaced};
+use crate::words::{change, mean_interval, percent};
 
 pub(crate) fn section(run: &Run) -> Section {
     let (line, then) = (format!("hwasp tolerances {}", run.typed_path()), "what an error of each parameter costs");
@@ -37,7 +37,7 @@ fn sensitivities(list: &Sensitivities) -> Markup {
             tbody {
                 @for parameter in &list.parameters {
                     tr {
-                        th scope="row" { (spaced(&parameter.name)) }
+                        th scope="row" { (parameter.name) }
                         td { "±" (parameter.error_text) }
                         td.n { (side(&parameter.minus, parameter)) }
                         td.n { (side(&parameter.plus, parameter)) }

@@ -25,6 +25,9 @@ use crate::summary::{Summary, values_hash};
 /// A run that was written before.
 pub struct SavedRun {
     path: PathBuf,
+    /// As it was trained.
+    trained: Assembly,
+    /// As it is judged.
     assembly: Assembly,
 }
 
@@ -42,9 +45,10 @@ impl SavedRun {
         let assembly = |set: &[String]| -> Result<Assembly, RunError> {
             Ok(Assembly::new(&saved_experiment(path, set, catalogue)?)?)
         };
-        let asked = assembly(assignments)?;
+        let mut asked = assembly(assignments)?;
+        let mut trained = asked.clone();
         if !assignments.is_empty() {
-            let trained = assembly(&[])?;
+            trained = assembly(&[])?;
             if let Some(what) = trained.other_machine(&asked) {
                 // The first of them after which it is another one; a part of them may be no experiment by itself.
                 let other =
@@ -53,8 +57,9 @@ impl SavedRun {
                 let assignment = shorten(&assignments[at], 120);
                 return Err(RunError::OtherMachine { path: path.to_owned(), assignment, what });
             }
+            asked = trained.judged_in(&asked);
         }
-        Ok(Self { path: path.to_owned(), assembly: asked })
+        Ok(Self { path: path.to_owned(), trained, assembly: asked })
     }
 
     /// Its experiment, ready to run.
@@ -69,11 +74,11 @@ impl SavedRun {
             return self.params_so_far();
         }
         let bytes = read_limited(&path, LARGEST_POLICY)?;
-        read_policy(&self.assembly.policy, &bytes).map_err(|source| RunError::Policy { path, source })
+        read_policy(&self.trained.policy, &bytes).map_err(|source| RunError::Policy { path, source })
     }
 
     fn params_so_far(&self) -> Result<Vec<f32>, RunError> {
-        let experiment = self.assembly.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+        let experiment = self.trained.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
         let store = CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment));
         let found = store.newest()?;
         found.warn();
@@ -81,7 +86,7 @@ impl SavedRun {
         let checkpoint = found.checkpoint.ok_or_else(unfinished)?;
         let steps = checkpoint.env_steps;
         tracing::warn!("{} did not come to its end: this is what it was after {steps} steps", self.path.display());
-        params_at(&self.assembly, &checkpoint)
+        params_at(&self.trained, &checkpoint)
             .map_err(|source| RunError::State { path: self.path.clone(), source: Box::new(source) })
     }
 

@@ -65,6 +65,7 @@
 //! ```
 
 mod bar;
+mod look;
 mod plant;
 mod ports;
 mod problem;

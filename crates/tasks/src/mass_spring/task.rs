@@ -1,8 +1,9 @@
 //! The purpose: bring the lower mass to the goal and keep it there with as little motor as can be.
 
-use hwasp_core::{CommandPort, EnvSpec, Stream, Task};
+use hwasp_core::{CommandPort, EnvSpec, Sight, Stream, Task};
 use rand::RngExt;
 
+use super::look::Looks;
 use super::{Coupling, MassSpringPlant, MassSpringSettings, Reward, ports};
 
 /// Starts anywhere in the range of the upper mass, sees y1 and v1, and never ends early.
@@ -19,6 +20,7 @@ pub struct MassSpringTask {
     max_speed: f64,
     /// How far the lower mass starts below the upper one.
     initial_gap: f64,
+    looks: Looks,
 }
 
 impl MassSpringTask {
@@ -42,6 +44,7 @@ impl MassSpringTask {
             max_position: settings.max_position,
             max_speed: settings.max_speed,
             initial_gap,
+            looks: Looks::new(settings),
         }
     }
 }
@@ -75,6 +78,10 @@ impl Task for MassSpringTask {
         }
     }
 
+    fn set_design(&mut self, design: &[f64]) {
+        self.looks.set_design(design);
+    }
+
     fn reset(&mut self, plant: &mut MassSpringPlant, rng: &mut Stream) {
         let y1 = rng.random::<f64>() * self.max_position;
         let v1 = (rng.random::<f64>() * 2.0 - 1.0) * self.max_speed;
@@ -91,5 +98,9 @@ impl Task for MassSpringTask {
     fn reward(&mut self, plant: &MassSpringPlant, command: &[f64]) -> f64 {
         let (y2, v2) = plant.lower();
         self.reward.value(y2 - self.goal, v2, command[0], self.motor_limit)
+    }
+
+    fn look(&mut self, plant: &MassSpringPlant) -> Option<Sight> {
+        Some(self.looks.sight(plant))
     }
 }

@@ -130,7 +130,8 @@ impl Assembly {
     pub(crate) fn check_budget(&self) -> Result<(), AssembleError> {
         let Some((popsize, each)) = self.generation() else { return Ok(()) };
         if self.experiment().method.trains_inside() && self.policy.free_design().is_empty() {
-            return Err(AssembleError::NothingToSearch { method: self.experiment().method.name() });
+            let (method, parameters) = (self.experiment().method.name(), self.policy.space().len());
+            return Err(AssembleError::NothingToSearch { method, parameters });
         }
         let given = self.experiment().train.env_steps;
         let needed = popsize as u64 * each + self.final_steps();

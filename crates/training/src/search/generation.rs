@@ -181,6 +181,8 @@ fn looked_through(
                 undiscounted_return: undiscounted[k],
                 steps: rows.len(),
                 end,
+                // Rows do not tell it, and no score asks.
+                ended_by: None,
                 outcome,
                 terms,
             }));

@@ -32,6 +32,20 @@ const LEG: &str = r#"<mujoco model="leg">
 </mujoco>
 "#;
 
+/// Nothing holds it, and nothing drives it.
+const FLYING: &str = "<mujoco>\n<worldbody>\n<body name='frame'><freejoint name='root'/><geom size='0.1'/></body>\n</worldbody>\n</mujoco>";
+
+/// Two rods that a constraint joins, and that hang apart.
+const LOOP: &str = r#"<mujoco>
+  <worldbody>
+    <body name="torso"><joint name="hip" axis="0 1 0"/><geom size="0.1"/><site name="left" pos="0 0 -0.2"/></body>
+    <body name="rod" pos="0.1 0 0"><joint name="knee" axis="0 1 0"/><geom size="0.1"/><site name="right" pos="0 0 -0.2"/></body>
+  </worldbody>
+  <equality><connect name="tips" site1="left" site2="right"/></equality>
+  <actuator><motor name="knee" joint="knee"/></actuator>
+</mujoco>
+"#;
+
 /// A shank that is designed.
 const SHANK: &str =
     "[task.design]\nshank = { limits = [\"0.3 m\", \"0.7 m\"], sets = [\"geom.shin.size[1] = shank / 2\"] }\n";
@@ -98,6 +112,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     model!("A mesh that is missing", "<mujoco><asset><mesh file='arm.stl'/></asset></mujoco>"),
     model!("A mesh outside of the folder", "<mujoco><asset><mesh file='../../arm.stl'/></asset></mujoco>"),
+    model!("A model that includes itself", "<mujoco><include file='robot.xml'/></mujoco>"),
     model!("A file included that is missing", "<mujoco><include file='common.xml'/></mujoco>"),
     model!(
         "A link of a URDF without inertia",
@@ -123,6 +138,7 @@ pub(super) const CASES: &[Case] = &[
     robot!("A joint that is a body", "observe = [\"joint.torso.pos\"]\n"),
     robot!("A misspelt attribute", "observe = [\"joint.knee.position\"]\n"),
     robot!("A joint without an attribute", "observe = [\"joint.knee\"]\n"),
+    robot!("A part of the names of joints", "observe = [\"joint.k*.pos\"]\n"),
     robot!("A kind that there is not", "observe = [\"muscle.knee.pos\"]\n"),
     robot!("A name of one's own that was not defined", "observe = [\"radius * 2\"]\n"),
     robot!("A number of an element beyond the last", "observe = [\"joint.#7.pos\"]\n"),
@@ -148,6 +164,11 @@ pub(super) const CASES: &[Case] = &[
     // Purpose.
     robot!("No reward", "", "[task.reward]\n"),
     robot!("A term of the reward that cannot name a curve", "", "[task.reward]\n\"how far\" = \"1\"\n"),
+    robot!(
+        "A definition that is wrong, and named",
+        "observe = [\"bent\"]\n",
+        "[task.define]\nbent = \"2 * knee\"\nknee = \"joint.nee.pos\"\n"
+    ),
     robot!("Definitions in a circle", "", "[task.define]\na = \"b + 1\"\nb = \"a + 1\"\n"),
     robot!("A definition with the name of a word", "", "[task.define]\njoint = \"1\"\n"),
     robot!("A definition with the name of a unit", "", "[task.define]\nkg = \"1\"\n"),
@@ -194,6 +215,8 @@ pub(super) const CASES: &[Case] = &[
     robot!("A force on nothing", "", "[task.forces]\n\"body.trunk\" = \"[0, 0, 1]\"\n"),
     robot!("A force of two components", "", "[task.forces]\n\"body.torso\" = \"[0, 1]\"\n"),
     robot!("A delay that is no time", "observation_delay = \"3 mm\"\n"),
+    robot!("A delay before the time", "command_delay = \"-20 ms\"\n"),
+    robot!("A delay that is drawn before the time", "observation_delay = \"uniform(-10 ms, 20 ms)\"\n"),
     // The law and its design.
     robot!("An effort on a body", "", "[task.law]\n\"body.torso\" = \"1\"\n"),
     robot!("An effort on a joint that there is not", "", "[task.law]\n\"joint.nee\" = \"1\"\n"),
@@ -249,6 +272,9 @@ pub(super) const CASES: &[Case] = &[
     robot!("A motor for a joint that there is not", "motors = { ankle = { limits = [-1, 1] } }\n"),
     robot!("A motor that does nothing", "motors = { lift = { limits = [-1, 1], gear = 0 } }\n"),
     robot!("A free base for a model that says how its base is held", "base = \"free\"\n"),
+    model!("A fixed base for a model that frees it", FLYING, "base = \"fixed\"\n", "[task.reward]\nup = 1\n"),
+    model!("A model of a free joint without actuators", FLYING, "", "[task.commands]\n[task.reward]\nup = 1\n"),
+    model!("A loop that is open at the start", LOOP),
     robot!("A floor for a model that has one", "floor = true\n"),
     robot!("A name with dots that has no quotes", "", "[task.law]\njoint.knee = \"3 N*m\"\n"),
     case(

@@ -57,6 +57,12 @@ pub trait LearnerKind: Send + Sync {
         None
     }
 
+    /// Whether it learns from old experience: what it has kept has to mean the same later, so that observations and rewards are
+    /// measured alike all the time.
+    fn keeps_experience(&self) -> bool {
+        false
+    }
+
     /// The defaults of the value baseline beside it.
     fn baseline(&self, settings: &dyn AnySettings, rows: usize) -> BaselineSettings;
 

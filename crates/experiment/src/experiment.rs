@@ -171,7 +171,7 @@ fn read_experiment<'r>(
     let (name, description, seed) = read_top(&mut root);
     let mut section = |name: &str| reader.section(&mut root, name);
     let [task, controller, design, noise] = ["task", "controller", "design", "noise"].map(&mut section);
-    let [choice, baseline, search, cmaes, ars, train] =
+    let [mut choice, baseline, search, cmaes, ars, train] =
         ["learner", "baseline", "search", "cmaes", "ars", "train"].map(&mut section);
     let mut tables: Vec<(String, Section<'_>)> =
         catalogue.learners().iter().map(|kind| (kind.name().to_owned(), section(kind.name()))).collect();
@@ -191,7 +191,7 @@ fn read_experiment<'r>(
         let at = tables.iter().position(|(other, _)| other == name);
         tables.swap_remove(at.expect("every learner has a table")).1
     };
-    learner.read(choice, table, &train, sound);
+    learner.read(&mut choice, table, &train, sound);
     let baseline = read_baseline(&learner, &train, sound, baseline);
     let search = read_table(SearchSettings::new(&train, sound), search);
     let sigma = if method == Method::CmaesRl { 0.25 } else { 0.5 };
@@ -200,10 +200,22 @@ fn read_experiment<'r>(
     // The rest cannot be judged without a task.
     let Some(task) = task else {
         cmaes(false);
+        choice.finish();
         return None;
     };
     let searched_by = (method.searches() && !method.trains_inside()).then(|| method.name());
     let controller = read_table(ControllerSettings::new(task.observations(), searched_by), controller);
+    if searched_by.is_none() {
+        let centre = "leave it out, and write controller.observation_center and observation_scale";
+        learner.check(
+            &mut choice,
+            [
+                ("train.reward_scaling", train.reward_scaling, "leave it out: critics measure rewards by themselves"),
+                ("controller.normalize_observations", controller.normalize_observations, centre),
+            ],
+        );
+    }
+    choice.finish();
     let cmaes = cmaes(method == Method::Cmaes && most_parameters(&controller, &task) > MOST_CORRELATED);
     let design = read_table(DesignSettings::new(method, task.groups()), design);
     let noise = read_table(NoiseSettings::new(&task, &design), noise);

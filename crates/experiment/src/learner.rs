@@ -30,14 +30,13 @@ impl LearnerSettings {
     /// Reads the choice and, by their names, the tables. `sound`: whether the iterations are what the file asks for.
     pub(crate) fn read<'r>(
         &mut self,
-        mut choice: Section<'r>,
+        choice: &mut Section<'r>,
         mut table: impl FnMut(&str) -> Section<'r>,
         train: &TrainSettings,
         sound: bool,
     ) {
         let names: Vec<(&str, usize)> = self.kinds.iter().enumerate().map(|(i, kind)| (kind.name(), i)).collect();
         let chosen = choice.choice("algorithm", &names).unwrap_or(0);
-        choice.finish();
         for (i, kind) in self.kinds.iter().enumerate() {
             let mut section = table(kind.name());
             let mut own = kind.defaults(train.rows(), &self.settings[..i]);
@@ -49,6 +48,16 @@ impl LearnerSettings {
             section.finish();
         }
         self.chosen = chosen;
+    }
+
+    /// Whether what the chosen one keeps means the same later. `measured`: keys that change what is seen or earned, whether they are
+    /// set, and the way out.
+    pub(crate) fn check(&self, choice: &mut Section<'_>, measured: [(&str, bool, &str); 2]) {
+        for (key, _, hint) in measured.into_iter().filter(|(_, set, _)| *set && self.kind().keeps_experience()) {
+            let name = self.algorithm();
+            let message = format!("learner.algorithm = \"{name}\" keeps old experience, and {key} = true measures it ever anew");
+            choice.clash("algorithm", message, hint);
+        }
     }
 
     /// What improves the policy, by name.

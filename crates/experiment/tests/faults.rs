@@ -60,6 +60,8 @@ wrong_files! {
     too_many_rows: "[train]\nepisodes_per_iteration = 100000\nepisode_steps = 1000\nenv_steps = 1e9\n";
     scaled_twice: "[controller]\nnormalize_observations = true\nobservation_scale = [0.1, 0.5]\n";
     statistics_of_a_search: "method = \"ars\"\n[controller]\nnormalize_observations = true\n[methods.cmaes-rl.controller]\nnormalize_observations = true\n";
+    experience_measured_anew: "[learner]\nalgorithm = \"td3\"\n[controller]\nnormalize_observations = true\n[train]\nreward_scaling = true\n";
+    replays_that_hold_too_little: "[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
     fewer_steps_than_lanes: "[train]\nsteps_per_iteration = 3\nepisodes_per_iteration = 4\n[ppo]\nminibatch_rows = 30\n";
     unknown_method: "[methods.hwsap.ppo]\nepochs = 3\n";
     fault_in_the_tables_of_another_method: "[methods.minimal.ppo]\nepohcs = 3\nclip_ratio = 7\n[methods]\nfixed = 1\n";

@@ -75,6 +75,8 @@ impl Default for ReplayConfig {
     }
 }
 
+/// The most moments that a replay may hold: a few hundred bytes each.
+const MOST_FRAMES: usize = 100_000_000;
 /// Limits of Adam's learning rate.
 const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
@@ -85,7 +87,8 @@ impl Settings for ReplayConfig {
         fields.count("n_step", &mut self.n_step, 1..=100, about);
         fields.count("batch_rows", &mut self.batch_rows, 1..=65_536, "rows of a gradient step");
         let about = "moments that the replay holds, one per step and one per episode; the oldest give way";
-        fields.count("replay_frames", &mut self.replay_frames, 100..=MOST_ROWS, about);
+        fields.default("1 000 000, or twice the rows of an iteration");
+        fields.count("replay_frames", &mut self.replay_frames, 100..=MOST_FRAMES, about);
         fields.count("warmup_steps", &mut self.warmup_steps, 1..=MOST_ROWS, "steps before the first update");
         let about = "gradient steps of the critics per step of the simulator";
         fields.number("updates_per_step", &mut self.updates_per_step, 1e-3..=100.0, about);

@@ -37,12 +37,18 @@ impl LearnerKind for Td3Kind {
         "TD3"
     }
 
-    fn defaults(&self, _: usize, _: &[Box<dyn AnySettings>]) -> Box<dyn AnySettings> {
-        Box::new(Td3Config::default())
+    fn defaults(&self, rows: usize, _: &[Box<dyn AnySettings>]) -> Box<dyn AnySettings> {
+        let mut usual = Td3Config::default();
+        usual.replay.replay_frames = usual.replay.replay_frames.max(2 * rows);
+        Box::new(usual)
     }
 
     fn fault(&self, settings: &dyn AnySettings, rows: usize, portion: &str) -> Option<SettingFault> {
         fault(self.name(), &own::<Td3Config>(settings).replay, rows, portion)
+    }
+
+    fn keeps_experience(&self) -> bool {
+        true
     }
 
     /// It has critics instead of one.

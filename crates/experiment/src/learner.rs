@@ -55,7 +55,8 @@ impl LearnerSettings {
     pub(crate) fn check(&self, choice: &mut Section<'_>, measured: [(&str, bool, &str); 2]) {
         for (key, _, hint) in measured.into_iter().filter(|(_, set, _)| *set && self.kind().keeps_experience()) {
             let name = self.algorithm();
-            let message = format!("learner.algorithm = \"{name}\" keeps old experience, and {key} = true measures it ever anew");
+            let message =
+                format!("learner.algorithm = \"{name}\" keeps old experience, and {key} = true measures it ever anew");
             choice.clash("algorithm", message, hint);
         }
     }

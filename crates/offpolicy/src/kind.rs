@@ -16,7 +16,10 @@ fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Op
     if frames < settings.warmup_steps {
         return Some(SettingFault {
             key: "replay_frames",
-            message: format!("{table}.replay_frames = {frames} is less than {table}.warmup_steps = {}", settings.warmup_steps),
+            message: format!(
+                "{table}.replay_frames = {frames} is less than {table}.warmup_steps = {}",
+                settings.warmup_steps
+            ),
             hint: "learning would never begin: hold more, or begin earlier".into(),
         });
     }

@@ -235,7 +235,8 @@ impl<P: Policy> Td3<P> {
     }
 
     fn descend_policy(&mut self, rates: &[f32]) {
-        let mut workers = self.workers.iter_mut().map(|worker| worker.get_mut().unwrap_or_else(PoisonError::into_inner));
+        let mut workers =
+            self.workers.iter_mut().map(|worker| worker.get_mut().unwrap_or_else(PoisonError::into_inner));
         let Some(first) = workers.next() else { return };
         for other in workers {
             first.add_policy(&self.policy, other);

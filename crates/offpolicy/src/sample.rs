@@ -151,7 +151,14 @@ impl View {
     }
 
     /// Writes the inputs of a block `[rows × width]` but for the actions.
-    pub(crate) fn fill(&self, sample: &Sample, moments: &Moments, block: &Range<usize>, scaling: &Scaling, to: &mut [f32]) {
+    pub(crate) fn fill(
+        &self,
+        sample: &Sample,
+        moments: &Moments,
+        block: &Range<usize>,
+        scaling: &Scaling,
+        to: &mut [f32],
+    ) {
         let Dims { obs, context, .. } = self.dims;
         for (r, to) in block.clone().zip(to.chunks_exact_mut(self.width())) {
             to[..obs].copy_from_slice(&moments.obs[r * obs..][..obs]);
@@ -171,7 +178,13 @@ impl View {
     }
 
     /// Writes the actions of so many rows, which lie column by column, into the inputs.
-    pub(crate) fn fill_actions(&self, rows: usize, (actions, stride): (&[f32], usize), scaling: &Scaling, to: &mut [f32]) {
+    pub(crate) fn fill_actions(
+        &self,
+        rows: usize,
+        (actions, stride): (&[f32], usize),
+        scaling: &Scaling,
+        to: &mut [f32],
+    ) {
         let (at, width) = (self.action_at(), self.width());
         for (a, affine) in scaling.action.iter().enumerate() {
             for (r, &x) in actions[a * stride..][..rows].iter().enumerate() {

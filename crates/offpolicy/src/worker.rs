@@ -164,9 +164,8 @@ impl<P: Policy> Worker<P> {
                     let pulled = pulled[r * stride + at + a] / affine.scale;
                     // Beyond a limit nothing changes on the way out; the way back is open.
                     let mean = mean[a * BLOCK + r];
-                    let stuck = step.limits[a].is_some_and(|(lo, hi)| {
-                        (mean > hi && pulled < 0.0) || (mean < lo && pulled > 0.0)
-                    });
+                    let stuck = step.limits[a]
+                        .is_some_and(|(lo, hi)| (mean > hi && pulled < 0.0) || (mean < lo && pulled > 0.0));
                     *c = if stuck { 0.0 } else { pulled };
                 }
             }

@@ -153,7 +153,9 @@ impl<'a> Gradient<'a> {
         let (assembly, executor, collector, experiment) = (self.assembly, run.executor, run.collector, &run.experiment);
         let (mut update, mut ahead) = (None, None);
         executor.both(
-            &mut || ahead = Some(assembly.iterates(env_steps).then(|| collect(assembly, collector, experiment, &stand))),
+            &mut || {
+                ahead = Some(assembly.iterates(env_steps).then(|| collect(assembly, collector, experiment, &stand)))
+            },
             &mut || update = Some(self.learn(executor, batch)),
         );
         let (update, ahead) = update.zip(ahead).expect("an executor runs every job");

@@ -1,8 +1,8 @@
 //! Losses and gradients against arithmetic by hand and against finite differences.
 
 use hwasp_core::{
-    Batch, CommandPort, DesignGroup, DesignSpace, Dimension, End, EnvSpec, Episode, HardwarePolicy, Initial, Law, Noise,
-    Placement, PolicySpec, Port, Ports,
+    Batch, CommandPort, DesignGroup, DesignSpace, Dimension, End, EnvSpec, Episode, HardwarePolicy, Initial, Law,
+    Noise, Placement, PolicySpec, Port, Ports,
 };
 use hwasp_diff::{Activation, Program};
 

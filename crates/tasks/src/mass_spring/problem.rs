@@ -181,6 +181,7 @@ impl Problem for Stiffness {
         vec![
             Preset::new("mass-spring", include_str!("../../../../experiments/mass-spring.toml")),
             Preset::new("mass-spring-50", include_str!("../../../../experiments/mass-spring-50.toml")),
+            Preset::new("mass-spring-td3", include_str!("../../../../experiments/mass-spring-td3.toml")),
             Preset::new("paper/mass-spring", include_str!("../../../../experiments/paper/mass-spring.toml")),
             Preset::new("paper/mass-spring-50", include_str!("../../../../experiments/paper/mass-spring-50.toml")),
         ]

@@ -21,7 +21,14 @@ fn run<S: Simd>(simd: S, mlp: &Mlp) -> Vec<u32> {
     simd.vectorize(Backward { inputs, input: &input, cotangent: &cotangent, weights: true, tape });
     let mut gradient = vec![0.0; params.len()];
     mlp.gradient(tape, &mut gradient);
-    tape.output().0.iter().chain(tape.tangent().0).chain(&gradient).chain(tape.input_cotangent().0).map(|x| x.to_bits()).collect()
+    tape.output()
+        .0
+        .iter()
+        .chain(tape.tangent().0)
+        .chain(&gradient)
+        .chain(tape.input_cotangent().0)
+        .map(|x| x.to_bits())
+        .collect()
 }
 
 #[test]
@@ -65,7 +72,9 @@ fn cotangents_of_inputs_are_derivatives() {
         let step = 1e-6;
         let expected: Vec<f64> = (0..input.len())
             .map(|i| {
-                let at = |by: f64| input.iter().enumerate().map(|(k, x)| if k == i { x + by } else { *x }).collect::<Vec<_>>();
+                let at = |by: f64| {
+                    input.iter().enumerate().map(|(k, x)| if k == i { x + by } else { *x }).collect::<Vec<_>>()
+                };
                 (value(&at(step)) - value(&at(-step))) / (2.0 * step)
             })
             .collect();

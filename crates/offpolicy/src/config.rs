@@ -112,7 +112,7 @@ impl Settings for ReplayConfig {
 ///
 /// | name | default | purpose |
 /// |---|---|---|
-/// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or the spread of an effort |
+/// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or twice the first noise of an effort |
 /// | `target_noise_clip` | 0.5 | its largest size, in the same unit |
 #[derive(Clone, Debug, PartialEq)]
 pub struct Td3Config {
@@ -133,7 +133,7 @@ impl Default for Td3Config {
 impl Settings for Td3Config {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         self.replay.fields(fields);
-        let about = "standard deviation of the noise of target actions, of half the range of a command or of the spread of an effort";
+        let about = "standard deviation of the noise of target actions, as a share of half the range of a command or of twice the first noise of an effort";
         fields.number("target_noise", &mut self.target_noise, 0.0..=10.0, about);
         fields.number("target_noise_clip", &mut self.target_noise_clip, 0.0..=10.0, "the largest size of that noise");
     }

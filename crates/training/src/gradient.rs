@@ -154,7 +154,7 @@ impl<'a> Gradient<'a> {
         let (mut update, mut ahead) = (None, None);
         executor.both(
             &mut || {
-                ahead = Some(assembly.iterates(env_steps).then(|| collect(assembly, collector, experiment, &stand)))
+                ahead = Some(assembly.iterates(env_steps).then(|| collect(assembly, collector, experiment, &stand)));
             },
             &mut || update = Some(self.learn(executor, batch)),
         );

@@ -211,7 +211,7 @@ fn beyond_a_limit_only_the_way_back_is_open() {
     }
 }
 
-/// Through critic, law and controller, by central differences, so small that hardly a ReLU turns on the way.
+/// Through critic, law and controller, by central differences, so small that hardly a kink lies on the way.
 #[test]
 fn the_gradient_reaches_controller_and_design() {
     let mut scene = Scene::new(&[5], &[9, 7]);

@@ -27,13 +27,8 @@ pub trait Learner: Persist + Send {
     /// The names of what an update tells, always the same.
     fn metric_names(&self) -> &'static [&'static str];
 
-    /// Whether it may learn from what other parameters than the present ones did. Batches may then be collected while it learns,
-    /// with the parameters from before.
-    fn learns_from_others(&self) -> bool {
-        false
-    }
-
-    /// Learns from a batch that the present parameters gave, or others where it [may](Self::learns_from_others). `progress` in [0, 1] drives schedules; `iteration` names the
+    /// Learns from a batch that the present parameters gave, or earlier ones where it
+    /// [keeps experience](crate::LearnerKind::keeps_experience). `progress` in [0, 1] drives schedules; `iteration` names the
     /// random stream. `executor` runs passes over blocks of rows, where a learner has use for it; its number of threads
     /// changes no bit. Returns what the update did, under the [names](Self::metric_names). After an error the learner is as
     /// it was before the update.

@@ -57,14 +57,19 @@ pub trait LearnerKind: Send + Sync {
         None
     }
 
-    /// Whether it learns from old experience: what it has kept has to mean the same later, so that observations and rewards are
-    /// measured alike all the time.
+    /// Whether it learns from old experience, that of other parameters too. Batches may then be collected while it learns, with the
+    /// parameters from before; and what it has kept has to mean the same later, so that observations and rewards are measured alike
+    /// all the time.
     fn keeps_experience(&self) -> bool {
         false
     }
 
     /// The defaults of the value baseline beside it.
-    fn baseline(&self, settings: &dyn AnySettings, rows: usize) -> BaselineSettings;
+    fn baseline(&self, _settings: &dyn AnySettings, rows: usize) -> BaselineSettings {
+        let mut baseline = BaselineSettings::default();
+        baseline.mlp.minibatch_rows = rows.min(baseline.mlp.minibatch_rows);
+        baseline
+    }
 
     /// The discount that returns are told and candidates scored by.
     fn discount(&self, settings: &dyn AnySettings) -> f64;
@@ -169,12 +174,6 @@ impl LearnerKind for TrpoKind {
             };
         }
         Box::new(usual)
-    }
-
-    fn baseline(&self, _: &dyn AnySettings, rows: usize) -> BaselineSettings {
-        let mut baseline = BaselineSettings::default();
-        baseline.mlp.minibatch_rows = rows.min(baseline.mlp.minibatch_rows);
-        baseline
     }
 
     fn discount(&self, settings: &dyn AnySettings) -> f64 {

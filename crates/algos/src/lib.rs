@@ -29,7 +29,10 @@ pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
 pub use learner::{LearnError, Learner};
 pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKind, own};
 pub use metrics::Metrics;
+pub use minibatch::BLOCK;
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
 pub use search::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter, Stop};
-pub use settings::{ArsSettings, ArsVariant, BaselineKind, BaselineSettings, MOST_LAYERS, MOST_ROWS, WIDEST_LAYER};
+pub use settings::{
+    ArsSettings, ArsVariant, BaselineKind, BaselineSettings, MOST_LAYERS, MOST_ROWS, RATES, WIDEST_LAYER,
+};
 pub use trpo::{FisherRows, Solution, Trpo, TrpoConfig, TrpoSettings, conjugate_gradient};

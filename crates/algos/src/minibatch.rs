@@ -7,7 +7,7 @@ use hwasp_core::{Batch, Rows};
 use crate::draws::Draws;
 
 /// Rows of a block that is worked on at once: its activations stay in the first-level cache.
-pub(crate) const BLOCK: usize = 64;
+pub const BLOCK: usize = 64;
 
 /// Rows in minibatches of even size: as few of them as hold no more than `size` rows each (0 for all rows in one), larger
 /// ones first, by one row at most. Every minibatch is a full step, so that a small rest would weigh its rows far more.

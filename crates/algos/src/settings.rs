@@ -17,7 +17,7 @@ pub const WIDEST_LAYER: usize = 4096;
 /// The most candidates or directions of a generation.
 const MOST_CANDIDATES: usize = 100_000;
 /// Limits of Adam's learning rate.
-const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
+pub const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 impl Settings for PpoConfig {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::design::DesignSpace;
 use crate::environment::CommandPort;
 use crate::law::Law;
 
@@ -121,6 +122,14 @@ impl ActionLayout {
 
     pub(crate) fn len(&self) -> usize {
         self.sampled.len() + self.efforts + self.commands.len()
+    }
+
+    /// Limits of each component, SI; none of an effort.
+    pub(crate) fn limits(&self, space: &DesignSpace, ports: &[CommandPort]) -> Vec<Option<(f32, f32)>> {
+        let limits = |(lo, hi): (f64, f64)| Some((lo as f32, hi as f32));
+        let sampled = self.sampled.iter().map(|&i| limits(space.bounds(i)));
+        let commands = self.commands.iter().map(|&c| limits((ports[c].lo, ports[c].hi)));
+        sampled.chain(std::iter::repeat_n(None, self.efforts)).chain(commands).collect()
     }
 }
 

@@ -50,10 +50,15 @@ impl LearnerSettings {
         self.chosen = chosen;
     }
 
+    /// Whether the chosen one learns from old experience.
+    pub fn keeps_experience(&self) -> bool {
+        self.kind().keeps_experience()
+    }
+
     /// Whether what the chosen one keeps means the same later. `measured`: keys that change what is seen or earned, whether they are
     /// set, and the way out.
     pub(crate) fn check(&self, choice: &mut Section<'_>, measured: [(&str, bool, &str); 2]) {
-        for (key, _, hint) in measured.into_iter().filter(|(_, set, _)| *set && self.kind().keeps_experience()) {
+        for (key, _, hint) in measured.into_iter().filter(|(_, set, _)| *set && self.keeps_experience()) {
             let name = self.algorithm();
             let message =
                 format!("learner.algorithm = \"{name}\" keeps old experience, and {key} = true measures it ever anew");

@@ -1,6 +1,6 @@
 //! Settings of off-policy learners.
 
-use hwasp_algos::{MOST_LAYERS, MOST_ROWS, WIDEST_LAYER};
+use hwasp_algos::{MOST_LAYERS, MOST_ROWS, RATES, WIDEST_LAYER};
 use hwasp_settings::{Fields, Settings};
 
 /// Settings that all off-policy learners share.
@@ -77,8 +77,6 @@ impl Default for ReplayConfig {
 
 /// The most moments that a replay may hold: a few hundred bytes each.
 const MOST_FRAMES: usize = 100_000_000;
-/// Limits of Adam's learning rate.
-const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 impl Settings for ReplayConfig {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {

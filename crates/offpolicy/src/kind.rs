@@ -1,6 +1,6 @@
 //! TD3 by its name.
 
-use hwasp_algos::{BaselineSettings, Learner, LearnerKind, LearnerSetup, SettingFault, own};
+use hwasp_algos::{Learner, LearnerKind, LearnerSetup, SettingFault, own};
 use hwasp_settings::AnySettings;
 
 use crate::config::{ReplayConfig, Td3Config};
@@ -52,13 +52,6 @@ impl LearnerKind for Td3Kind {
 
     fn keeps_experience(&self) -> bool {
         true
-    }
-
-    /// It has critics instead of one.
-    fn baseline(&self, _: &dyn AnySettings, rows: usize) -> BaselineSettings {
-        let mut baseline = BaselineSettings::default();
-        baseline.mlp.minibatch_rows = rows.min(baseline.mlp.minibatch_rows);
-        baseline
     }
 
     fn discount(&self, settings: &dyn AnySettings) -> f64 {

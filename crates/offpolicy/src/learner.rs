@@ -255,11 +255,6 @@ impl<P: Policy> Learner for Td3<P> {
         METRICS
     }
 
-    /// Nothing that it has learned depends on which policy acted.
-    fn learns_from_others(&self) -> bool {
-        true
-    }
-
     fn update(
         &mut self,
         executor: &dyn Executor,

@@ -2,14 +2,12 @@
 
 use std::ops::Range;
 
+use hwasp_algos::BLOCK;
 use hwasp_core::{Rows, Stream};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::replay::{Dims, Replay};
 use crate::scaling::Scaling;
-
-/// Rows of a block that is worked on at once: its activations stay in the first-level cache.
-pub(crate) const BLOCK: usize = 64;
 
 /// The moments of one side of the steps: where they began, or where they led to.
 #[derive(Clone, Debug, Default)]

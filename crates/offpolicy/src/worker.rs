@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use hwasp_algos::BLOCK;
 use hwasp_core::Policy;
 use hwasp_diff::MlpTape;
 
 use crate::critic::Critics;
-use crate::sample::{BLOCK, Sample, View};
+use crate::sample::{Sample, View};
 use crate::scaling::Scaling;
 
 /// What all parts of a gradient step read.

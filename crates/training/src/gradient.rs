@@ -25,7 +25,7 @@ pub(crate) struct Gradient<'a> {
     pub(crate) learned: Learned,
     running: Running,
     /// The parameters that act in the next iteration, where they are not the present ones: those from before the last update, of
-    /// a learner that [learns from others](Learner::learns_from_others).
+    /// a learner that keeps experience.
     acting: Option<Vec<f32>>,
     /// What came of the next iteration's episodes, where they were run while the learner learned. It follows from the rest: who
     /// resumes runs them anew.
@@ -98,7 +98,8 @@ impl<'a> Gradient<'a> {
     /// From the beginning, with these parameters.
     pub(crate) fn beginning(assembly: &'a Assembly, params: Vec<f32>) -> Self {
         let learner = assembly.learner(params);
-        let acting = learner.learns_from_others().then(|| learner.params().to_vec());
+        let keeps_experience = assembly.experiment().learner.keeps_experience();
+        let acting = keeps_experience.then(|| learner.params().to_vec());
         Self { assembly, learner, learned: Learned::default(), running: Running::new(assembly), acting, ahead: None }
     }
 

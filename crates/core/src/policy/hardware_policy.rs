@@ -283,11 +283,7 @@ impl Policy for HardwarePolicy {
     }
 
     fn action_limits(&self) -> Vec<Option<(f32, f32)>> {
-        let layout = &self.composition.layout;
-        let limits = |(lo, hi): (f64, f64)| Some((lo as f32, hi as f32));
-        let sampled = layout.sampled.iter().map(|&i| limits(self.space().bounds(i)));
-        let commands = layout.commands.iter().map(|&c| limits((self.commands[c].lo, self.commands[c].hi)));
-        sampled.chain(std::iter::repeat_n(None, layout.efforts)).chain(commands).collect()
+        self.composition.layout.limits(self.space(), &self.commands)
     }
 
     fn drawn_actions(&self) -> usize {

@@ -64,6 +64,12 @@ pub trait LearnerKind: Send + Sync {
         false
     }
 
+    /// Whether it learns how widely commands spread, state by state: the controller tells it then, and `noise.command` is where it
+    /// begins.
+    fn state_dependent_std(&self) -> bool {
+        false
+    }
+
     /// The defaults of the value baseline beside it.
     fn baseline(&self, _settings: &dyn AnySettings, rows: usize) -> BaselineSettings {
         let mut baseline = BaselineSettings::default();

@@ -4,7 +4,7 @@
 
 use hwasp_algos::{PpoKind, TrpoKind};
 use hwasp_experiment::{Catalogue, CatalogueError};
-use hwasp_offpolicy::Td3Kind;
+use hwasp_offpolicy::{SacKind, Td3Kind};
 use hwasp_tasks::grasp::{Engine, GraspProblem};
 use hwasp_tasks::mass_spring::{BarLength, Stiffness};
 use hwasp_tasks::pendulum::PendulumProblem;
@@ -40,6 +40,7 @@ fn all() -> Result<Catalogue, CatalogueError> {
         .with_learner(PpoKind)?
         .with_learner(TrpoKind)?
         .with_learner(Td3Kind)?
+        .with_learner(SacKind)?
         .with(Stiffness)?
         .with(BarLength)?
         .with(ReachProblem)?

@@ -55,6 +55,11 @@ impl LearnerSettings {
         self.kind().keeps_experience()
     }
 
+    /// Whether the chosen one learns how widely commands spread.
+    pub fn state_dependent_std(&self) -> bool {
+        self.kind().state_dependent_std()
+    }
+
     /// Whether what the chosen one keeps means the same later. `measured`: keys that change what is seen or earned, whether they are
     /// set, and the way out.
     pub(crate) fn check(&self, choice: &mut Section<'_>, measured: [(&str, bool, &str); 2]) {

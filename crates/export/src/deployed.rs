@@ -42,10 +42,12 @@ impl Deployed {
         let design = assembly.worlds.training.law.as_built(&assembly.policy.design(params));
         let env = world.make.make(None).spec().clone();
         let mut policy = assembly.deployed(&design)?;
-        let mut params = assembly.policy.controller_params(params).to_vec();
-        if policy.spec().sees_design {
+        let mut params = policy.without_spread(assembly.policy.controller_params(params));
+        let alone = PolicySpec { state_dependent_std: false, ..policy.spec().clone() };
+        policy = HardwarePolicy::new(alone.clone(), &env)?;
+        if alone.sees_design {
             params = with_design_folded(&policy, &params, &design);
-            policy = HardwarePolicy::new(PolicySpec { sees_design: false, ..policy.spec().clone() }, &env)?;
+            policy = HardwarePolicy::new(PolicySpec { sees_design: false, ..alone }, &env)?;
         }
         let reads = world.law.reads(&env.command).expect("the policy was composed of this law and these commands");
         Ok(Self { spec: assembly.experiment().clone(), env, policy: Arc::new(policy), reads, params, world, design })

@@ -13,7 +13,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `replay_frames` | 1,000,000 | moments that are held |
 /// | `warmup_steps` | 1000 | steps before the first update |
 /// | `updates_per_step` | 1 | gradient steps per step of the simulator |
-/// | `policy_delay` | 2 | gradient steps of the critics for one of the policy |
+/// | `policy_delay` | 2 for TD3, 1 for SAC | gradient steps of the critics for one of the policy |
 /// | `learning_rate` | 3e-4 | of the policy, by Adam |
 /// | `critic_learning_rate` | 3e-4 | of the critics |
 /// | `learning_rate_final` | 1 | fraction of both left at the end of a linear decay |
@@ -63,7 +63,7 @@ impl Default for ReplayConfig {
             replay_frames: 1_000_000,
             warmup_steps: 1000,
             updates_per_step: 1.0,
-            policy_delay: 2,
+            policy_delay: 1,
             learning_rate: 3e-4,
             critic_learning_rate: 3e-4,
             learning_rate_final: 1.0,
@@ -103,36 +103,5 @@ impl Settings for ReplayConfig {
         fields.flag("privileged", &mut self.privileged, about);
         let about = "whether critics see what an episode is about and no sensor tells";
         fields.flag("context", &mut self.context, about);
-    }
-}
-
-/// Settings of [`Td3`](crate::Td3).
-///
-/// | name | default | purpose |
-/// |---|---|---|
-/// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or twice the first noise of an effort |
-/// | `target_noise_clip` | 0.5 | its largest size, in the same unit |
-#[derive(Clone, Debug, PartialEq)]
-pub struct Td3Config {
-    /// What it has in common with others.
-    pub replay: ReplayConfig,
-    /// σ̃ of target policy smoothing (Fujimoto et al. 2018, eq. 14).
-    pub target_noise: f64,
-    /// c of the same.
-    pub target_noise_clip: f64,
-}
-
-impl Default for Td3Config {
-    fn default() -> Self {
-        Self { replay: ReplayConfig::default(), target_noise: 0.2, target_noise_clip: 0.5 }
-    }
-}
-
-impl Settings for Td3Config {
-    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
-        self.replay.fields(fields);
-        let about = "standard deviation of the noise of target actions, as a share of half the range of a command or of twice the first noise of an effort";
-        fields.number("target_noise", &mut self.target_noise, 0.0..=10.0, about);
-        fields.number("target_noise_clip", &mut self.target_noise_clip, 0.0..=10.0, "the largest size of that noise");
     }
 }

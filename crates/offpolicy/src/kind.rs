@@ -1,14 +1,20 @@
-//! TD3 by its name.
+//! Off-policy learners by their names.
 
 use hwasp_algos::{Learner, LearnerKind, LearnerSetup, SettingFault, own};
+use hwasp_core::Reparameterised;
 use hwasp_settings::AnySettings;
 
-use crate::config::{ReplayConfig, Td3Config};
-use crate::learner::Td3;
+use crate::config::ReplayConfig;
+use crate::sac::{Sac, SacConfig, SacRule};
+use crate::td3::{Td3, Td3Config};
 
 /// Twin delayed deep deterministic policy gradients, `td3`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Td3Kind;
+
+/// Soft actor-critic, `sac`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SacKind;
 
 /// What of the settings does not go together with iterations of so many rows.
 fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Option<SettingFault> {
@@ -31,6 +37,12 @@ fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Op
     })
 }
 
+/// The settings of a kind, with a replay that holds iterations of so many rows.
+fn holding(mut replay: ReplayConfig, rows: usize) -> ReplayConfig {
+    replay.replay_frames = replay.replay_frames.max(2 * rows);
+    replay
+}
+
 impl LearnerKind for Td3Kind {
     fn name(&self) -> &'static str {
         "td3"
@@ -41,9 +53,8 @@ impl LearnerKind for Td3Kind {
     }
 
     fn defaults(&self, rows: usize, _: &[Box<dyn AnySettings>]) -> Box<dyn AnySettings> {
-        let mut usual = Td3Config::default();
-        usual.replay.replay_frames = usual.replay.replay_frames.max(2 * rows);
-        Box::new(usual)
+        let usual = Td3Config::default();
+        Box::new(Td3Config { replay: holding(usual.replay, rows), ..usual })
     }
 
     fn fault(&self, settings: &dyn AnySettings, rows: usize, portion: &str) -> Option<SettingFault> {
@@ -61,5 +72,41 @@ impl LearnerKind for Td3Kind {
     fn learner(&self, settings: &dyn AnySettings, setup: LearnerSetup) -> Box<dyn Learner> {
         let config = own::<Td3Config>(settings).clone();
         Box::new(Td3::new(config, setup.policy, setup.params, setup.seed, setup.design_lr_scale))
+    }
+}
+
+impl LearnerKind for SacKind {
+    fn name(&self) -> &'static str {
+        "sac"
+    }
+
+    fn title(&self) -> &'static str {
+        "SAC"
+    }
+
+    fn defaults(&self, rows: usize, _: &[Box<dyn AnySettings>]) -> Box<dyn AnySettings> {
+        let usual = SacConfig::default();
+        Box::new(SacConfig { replay: holding(usual.replay, rows), ..usual })
+    }
+
+    fn fault(&self, settings: &dyn AnySettings, rows: usize, portion: &str) -> Option<SettingFault> {
+        fault(self.name(), &own::<SacConfig>(settings).replay, rows, portion)
+    }
+
+    fn keeps_experience(&self) -> bool {
+        true
+    }
+
+    fn state_dependent_std(&self) -> bool {
+        true
+    }
+
+    fn discount(&self, settings: &dyn AnySettings) -> f64 {
+        own::<SacConfig>(settings).replay.discount
+    }
+
+    fn learner(&self, settings: &dyn AnySettings, setup: LearnerSetup) -> Box<dyn Learner> {
+        let rule = SacRule::new(own::<SacConfig>(settings).clone(), setup.policy.drawn_commands());
+        Box::new(Sac::new(rule, setup.policy, setup.params, setup.seed, setup.design_lr_scale))
     }
 }

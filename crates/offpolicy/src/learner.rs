@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use hwasp_algos::{Adam, AdamConfig, Exchange, LearnError, Learner, Metrics, Persist, StateError, group_rates};
 use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, stream};
 
-use crate::config::Td3Config;
+use crate::config::ReplayConfig;
 use crate::critic::{Critics, follow};
 use crate::replay::{Dims, Replay};
+use crate::rule::Rule;
 use crate::sample::{Sample, View};
 use crate::scaling::Scaling;
 use crate::worker::{Step, Worker};
@@ -15,12 +16,8 @@ use crate::worker::{Step, Worker};
 /// Rows of a gradient step that are a job of their own.
 const ROWS_PER_JOB: usize = 128;
 
-/// What an update tells.
-const METRICS: &[&str] = &["td_error", "value", "updates", "replay_steps"];
-
-/// Twin delayed deep deterministic policy gradients (Fujimoto et al. 2018), with the mechanism in the policy: the critics judge
-/// what the mechanism does to the world, and their gradient reaches the design through its law. What is in the replay stays true
-/// whatever the design becomes.
+/// A learner that lives on old experience, with the mechanism in the policy: the critics judge what the mechanism does to the
+/// world, and their gradient reaches the design through its law. What is in the replay stays true whatever the design becomes.
 ///
 /// | metric | meaning |
 /// |---|---|
@@ -28,15 +25,17 @@ const METRICS: &[&str] = &["td_error", "value", "updates", "replay_steps"];
 /// | `value` | mean value of the policy's actions in the states of the replay |
 /// | `updates` | gradient steps of the critics in this iteration |
 /// | `replay_steps` | steps in the replay |
-pub struct Td3<P: Policy> {
-    config: Td3Config,
+/// | `command_entropy` | of SAC: mean entropy of a step's commands, in nats of densities over [-1, 1] |
+/// | `temperature` | of SAC: what a nat is worth, in units of the return |
+#[allow(private_bounds)] // what tells one from another is nobody else's
+pub struct OffPolicy<P: Policy, R: Rule<P>> {
     policy: Arc<P>,
     seed: u64,
     /// Times the learning rate, of design parameters.
     design_lr_scale: f64,
     view: View,
     limits: Vec<Option<(f32, f32)>>,
-    learned: Learned,
+    learned: Learned<R>,
     replay: Replay,
     /// Working memory.
     sample: Sample,
@@ -47,9 +46,11 @@ pub struct Td3<P: Policy> {
 
 /// All that gradient steps change.
 #[derive(Clone, Debug)]
-struct Learned {
+struct Learned<R> {
+    rule: R,
     params: Vec<f32>,
-    target: Vec<f32>,
+    /// Those of the policy's slow copy; none where there is no such copy.
+    slow: Vec<f32>,
     adam: Adam,
     critics: Critics,
     scaling: Scaling,
@@ -59,13 +60,14 @@ struct Learned {
     updates: u64,
 }
 
-impl Persist for Learned {
+impl<R: Persist> Persist for Learned<R> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
         with.vector("params", &mut self.params)?;
-        with.vector("target", &mut self.target)?;
+        with.vector("target", &mut self.slow)?;
         with.part("adam", &mut self.adam)?;
         with.part("critics", &mut self.critics)?;
         with.part("scaling", &mut self.scaling)?;
+        with.part("rule", &mut self.rule)?;
         with.number("owed", &mut self.owed)?;
         with.number("updates", &mut self.updates)
     }
@@ -76,6 +78,7 @@ impl Persist for Learned {
 struct Sums {
     squares: f64,
     values: f64,
+    log_probs: f64,
     steps: u64,
     policy_steps: u64,
 }
@@ -84,36 +87,40 @@ struct Sums {
 struct Rates {
     policy: Vec<f32>,
     critic: Vec<f32>,
+    /// What is left of rates at the start.
+    decay: f64,
 }
 
-impl<P: Policy> Td3<P> {
+#[allow(private_bounds)]
+impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
     /// Starts from `params`. `seed` names the streams of critics and replay; design parameters learn `design_lr_scale` times as
     /// fast as the controller.
-    pub fn new(config: Td3Config, policy: Arc<P>, params: Vec<f32>, seed: u64, design_lr_scale: f64) -> Self {
+    pub fn new(rule: R, policy: Arc<P>, params: Vec<f32>, seed: u64, design_lr_scale: f64) -> Self {
         let dims = Dims::of(&*policy);
-        let settings = &config.replay;
+        let settings = rule.replay();
         let view = View::new(dims, settings.privileged, settings.context);
         let critics = Critics::new(view.width(), &settings.critic_hidden, seed);
+        let scaling = Scaling::new(dims);
         let rows = settings.batch_rows;
         let part = |at: usize| at..(at + ROWS_PER_JOB).min(rows);
-        let worker = |at| Mutex::new(Worker::new(part(at), &*policy, &critics, view));
+        let worker = |at| Mutex::new(Worker::new::<R>(part(at), &*policy, &critics, view));
         Self {
             workers: (0..rows).step_by(ROWS_PER_JOB).map(worker).collect(),
-            sample: Sample::new(dims, rows),
+            sample: Sample::new(dims, rows, R::drawn(&policy), rule.smoothing(&scaling).len()),
             gradient: vec![0.0; params.len()],
             critic_gradient: vec![0.0; critics.network.param_count()],
             replay: Replay::new(dims, settings.replay_frames),
             limits: policy.action_limits(),
             learned: Learned {
-                target: params.clone(),
+                rule,
+                slow: if R::SLOW_POLICY { params.clone() } else { Vec::new() },
                 adam: Adam::new(AdamConfig::default(), params.len()),
                 params,
                 critics,
-                scaling: Scaling::new(dims),
+                scaling,
                 owed: 0.0,
                 updates: 0,
             },
-            config,
             policy,
             seed,
             design_lr_scale,
@@ -121,27 +128,30 @@ impl<P: Policy> Td3<P> {
         }
     }
 
+    fn settings(&self) -> &ReplayConfig {
+        self.learned.rule.replay()
+    }
+
     fn rates(&self, progress: f64) -> Rates {
-        let settings = &self.config.replay;
+        let settings = self.settings();
         let decay = 1.0 + (settings.learning_rate_final - 1.0) * progress;
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
         let critic = (settings.critic_learning_rate * decay) as f32;
         Rates {
             policy: group_rates(self.policy.groups(), count, policy, self.design_lr_scale, 0.0),
             critic: vec![critic; self.critic_gradient.len()],
+            decay,
         }
     }
 
     /// All gradient steps that are owed.
     fn learn(&mut self, executor: &dyn Executor, rates: &Rates, iteration: u64) -> Result<Sums, LearnError> {
         let not_finite = |what| LearnError::NotFinite { what, iteration };
-        let discount = self.config.replay.discount;
+        let discount = self.settings().discount;
         if !self.learned.scaling.taken {
             self.learned.scaling = Scaling::of(&self.replay, (&*self.policy, &self.learned.params), discount);
         }
-        let scaling = &self.learned.scaling;
-        let (noise, clip) = (self.config.target_noise as f32, self.config.target_noise_clip as f32);
-        let smoothing: Vec<_> = scaling.action.iter().map(|a| (noise * a.scale, clip * a.scale)).collect();
+        let smoothing = self.learned.rule.smoothing(&self.learned.scaling);
         let mut chance = stream(self.seed, Purpose::Replay, iteration, 0);
         let mut sums = Sums::default();
         while self.learned.owed >= 1.0 {
@@ -171,7 +181,7 @@ impl<P: Policy> Td3<P> {
         chance: &mut Stream,
         sums: &mut Sums,
     ) {
-        let settings = &self.config.replay;
+        let settings = self.learned.rule.replay();
         let (rows, tau, delay) = (settings.batch_rows, settings.polyak, settings.policy_delay as u64);
         let value = self.learned.scaling.value;
         self.sample.draw(&self.replay, (settings.n_step, settings.discount), value, chance);
@@ -184,9 +194,12 @@ impl<P: Policy> Td3<P> {
             self.run(executor, smoothing, Worker::improve);
             self.descend_policy(&rates.policy);
             sums.values += self.sum(|worker| worker.values) / rows as f64;
+            let log_prob = self.sum(|worker| worker.log_probs) / rows as f64;
+            sums.log_probs += log_prob;
             sums.policy_steps += 1;
             let learned = &mut self.learned;
-            follow(&mut learned.target, &learned.params, tau);
+            learned.rule.settle(log_prob, rates.decay);
+            follow(&mut learned.slow, &learned.params, tau);
             for critic in &mut learned.critics.each {
                 follow(&mut critic.target, &critic.params, tau);
             }
@@ -198,18 +211,19 @@ impl<P: Policy> Td3<P> {
         &self,
         executor: &dyn Executor,
         smoothing: &[(f32, f32)],
-        act: impl Fn(&mut Worker<P>, &Step<'_, P>) + Sync,
+        act: impl Fn(&mut Worker<P>, &Step<'_, P, R>) + Sync,
     ) {
         let step = Step {
+            rule: &self.learned.rule,
             policy: &*self.policy,
             params: &self.learned.params,
-            target: &self.learned.target,
+            slow: &self.learned.slow,
             critics: &self.learned.critics,
             sample: &self.sample,
             scaling: &self.learned.scaling,
             view: self.view,
             limits: &self.limits,
-            rows: self.config.replay.batch_rows,
+            rows: self.settings().batch_rows,
             smoothing,
         };
         executor.for_each(self.workers.len(), &|i| {
@@ -246,13 +260,13 @@ impl<P: Policy> Td3<P> {
     }
 }
 
-impl<P: Policy> Learner for Td3<P> {
+impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
     fn params(&self) -> &[f32] {
         &self.learned.params
     }
 
     fn metric_names(&self) -> &'static [&'static str] {
-        METRICS
+        R::METRICS
     }
 
     fn update(
@@ -265,8 +279,8 @@ impl<P: Policy> Learner for Td3<P> {
         let before = self.learned.clone();
         let undo = self.replay.push(batch, &self.limits);
         let mut sums = Sums::default();
-        if self.replay.steps() >= self.config.replay.warmup_steps {
-            self.learned.owed += batch.rows() as f64 * self.config.replay.updates_per_step;
+        if self.replay.steps() >= self.settings().warmup_steps {
+            self.learned.owed += batch.rows() as f64 * self.settings().updates_per_step;
             let rates = self.rates(progress);
             match self.learn(executor, &rates, iteration) {
                 Ok(done) => sums = done,
@@ -281,11 +295,13 @@ impl<P: Policy> Learner for Td3<P> {
         let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
         let td_error = scale * mean(sums.squares, sums.steps).sqrt();
         let value = center + scale * mean(sums.values, sums.policy_steps);
-        Ok(Metrics::new(METRICS, vec![td_error, value, sums.steps as f64, self.replay.steps() as f64]))
+        let mut told = vec![td_error, value, sums.steps as f64, self.replay.steps() as f64];
+        told.extend(self.learned.rule.tell(mean(sums.log_probs, sums.policy_steps), scale));
+        Ok(Metrics::new(R::METRICS, told))
     }
 }
 
-impl<P: Policy> Persist for Td3<P> {
+impl<P: Policy, R: Rule<P>> Persist for OffPolicy<P, R> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
         with.part("learned", &mut self.learned)?;
         with.part("replay", &mut self.replay)

@@ -11,10 +11,15 @@ mod critic;
 mod kind;
 mod learner;
 mod replay;
+mod rule;
+mod sac;
 mod sample;
 mod scaling;
+mod td3;
 mod worker;
 
-pub use config::{ReplayConfig, Td3Config};
-pub use kind::Td3Kind;
-pub use learner::Td3;
+pub use config::ReplayConfig;
+pub use kind::{SacKind, Td3Kind};
+pub use learner::OffPolicy;
+pub use sac::{Sac, SacConfig, SacRule};
+pub use td3::{Td3, Td3Config};

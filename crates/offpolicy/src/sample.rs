@@ -33,8 +33,10 @@ pub(crate) struct Sample {
     pub(crate) reward: Vec<f32>,
     /// What the value of the next moment is worth.
     pub(crate) discount: Vec<f32>,
-    /// Standard normal numbers `[action × B]`, for the actions at the next moments.
-    pub(crate) noise: Vec<f32>,
+    /// Standard normal numbers `[· × B]`, column by column, for the policy's actions at the moments.
+    pub(crate) now_noise: Vec<f32>,
+    /// The same for the actions at the next moments, and behind them those that are added to them.
+    pub(crate) next_noise: Vec<f32>,
 }
 
 impl Moments {
@@ -62,8 +64,8 @@ impl Moments {
 }
 
 impl Sample {
-    /// Room for so many rows.
-    pub(crate) fn new(dims: Dims, count: usize) -> Self {
+    /// Room for so many rows, whose actions take `drawn` numbers; `added` more are added to the next ones.
+    pub(crate) fn new(dims: Dims, count: usize, drawn: usize, added: usize) -> Self {
         Self {
             dims,
             count,
@@ -71,16 +73,18 @@ impl Sample {
             next: Moments::new(dims, count),
             reward: vec![0.0; count],
             discount: vec![0.0; count],
-            noise: vec![0.0; count * dims.action],
+            now_noise: vec![0.0; count * drawn],
+            next_noise: vec![0.0; count * (drawn + added)],
         }
     }
 
-    /// Draws the rows, and the noise of the actions that follow them.
+    /// Draws the rows, and the noise of the actions.
     pub(crate) fn draw(&mut self, replay: &Replay, ahead: (usize, f64), values: (f64, f64), chance: &mut Stream) {
         for r in 0..self.count {
             self.take(r, replay, replay.draw(chance), ahead, values);
         }
-        self.noise.fill_with(|| StandardNormal.sample(chance));
+        self.next_noise.fill_with(|| StandardNormal.sample(chance));
+        self.now_noise.fill_with(|| StandardNormal.sample(chance));
     }
 
     /// Row `r` is this step: it counts `n_step` rewards, and values are measured by their centre and scale.

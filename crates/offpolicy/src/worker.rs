@@ -7,15 +7,17 @@ use hwasp_core::Policy;
 use hwasp_diff::MlpTape;
 
 use crate::critic::Critics;
+use crate::rule::Rule;
 use crate::sample::{Sample, View};
 use crate::scaling::Scaling;
 
 /// What all parts of a gradient step read.
-pub(crate) struct Step<'a, P: Policy> {
+pub(crate) struct Step<'a, P: Policy, R: Rule<P>> {
+    pub(crate) rule: &'a R,
     pub(crate) policy: &'a P,
-    /// The policy's parameters, and those of its target.
+    /// The policy's parameters, and those of its slow copy.
     pub(crate) params: &'a [f32],
-    pub(crate) target: &'a [f32],
+    pub(crate) slow: &'a [f32],
     pub(crate) critics: &'a Critics,
     pub(crate) sample: &'a Sample,
     pub(crate) scaling: &'a Scaling,
@@ -24,17 +26,41 @@ pub(crate) struct Step<'a, P: Policy> {
     pub(crate) limits: &'a [Option<(f32, f32)>],
     /// Rows of the whole step.
     pub(crate) rows: usize,
-    /// Spread and largest size of the noise of target actions, per component.
+    /// Spread and largest size of what is added to the next actions, per component, where something is.
     pub(crate) smoothing: &'a [(f32, f32)],
+}
+
+impl<P: Policy, R: Rule<P>> Step<'_, P, R> {
+    /// Brings actions within their limits, as the world does.
+    fn limit(&self, actions: &mut [f32], rows: usize) {
+        for (column, limits) in actions.chunks_exact_mut(BLOCK).zip(self.limits) {
+            if let Some((lo, hi)) = *limits {
+                for action in &mut column[..rows] {
+                    *action = action.clamp(lo, hi);
+                }
+            }
+        }
+    }
+}
+
+/// Takes over what critic `i` says where it says less than those before it.
+fn take_least(i: usize, tape: &MlpTape<f32>, least: &mut [f32], judge: &mut [usize]) {
+    let (values, stride) = tape.output();
+    for (r, (least, judge)) in least.iter_mut().zip(judge).enumerate() {
+        let value = values[r * stride];
+        if i == 0 || value < *least {
+            (*least, *judge) = (value, i);
+        }
+    }
 }
 
 /// Working memory of one part.
 pub(crate) struct Worker<P: Policy> {
     /// Its rows of the step.
     rows: Range<usize>,
-    /// Of the target policy, and of the policy.
-    target: P::Tape,
+    /// Of the policy, and of its slow copy where there is one.
     live: P::Tape,
+    slow: Option<P::Tape>,
     target_critics: [MlpTape<f32>; 2],
     pub(crate) critics: [MlpTape<f32>; 2],
     /// What critics see of a block, row by row.
@@ -42,42 +68,52 @@ pub(crate) struct Worker<P: Policy> {
     /// Actions of a block and their cotangents, column by column.
     actions: Vec<f32>,
     cotangents: Vec<f32>,
-    /// What the values of a block should be.
-    wanted: Vec<f32>,
+    /// The least of the critics' values of a block, and what they should be.
+    least: Vec<f32>,
+    /// Which critic says the least.
+    judge: Vec<usize>,
     /// Cotangents of the values of a block.
     value_cotangent: Vec<f32>,
     /// Σ squared error of the first critic.
     pub(crate) squares: f64,
     /// Σ value of the policy's actions.
     pub(crate) values: f64,
+    /// Σ of their log-probabilities.
+    pub(crate) log_probs: f64,
 }
 
 impl<P: Policy> Worker<P> {
     /// For these rows.
-    pub(crate) fn new(rows: Range<usize>, policy: &P, critics: &Critics, view: View) -> Self {
+    pub(crate) fn new<R: Rule<P>>(rows: Range<usize>, policy: &P, critics: &Critics, view: View) -> Self {
         let network = &critics.network;
         let actions = vec![0.0; policy.action_dim() * BLOCK];
         Self {
             rows,
-            target: policy.tape(BLOCK),
             live: policy.tape(BLOCK),
-            target_critics: [network.tape(BLOCK), network.tape(BLOCK)],
-            critics: [network.tape_with_inputs(BLOCK), network.tape(BLOCK)],
+            slow: R::SLOW_POLICY.then(|| policy.tape(BLOCK)),
+            target_critics: [0, 1].map(|_| network.tape_forward(BLOCK)),
+            critics: [0, 1].map(|i| if i < R::JUDGES { network.tape_with_inputs(BLOCK) } else { network.tape(BLOCK) }),
             inputs: vec![0.0; view.width() * BLOCK],
             cotangents: actions.clone(),
             actions,
-            wanted: vec![0.0; BLOCK],
+            least: vec![0.0; BLOCK],
+            judge: vec![0; BLOCK],
             value_cotangent: vec![0.0; BLOCK],
             squares: 0.0,
             values: 0.0,
+            log_probs: 0.0,
         }
     }
 
     /// The gradient of both critics' mean squared errors, left on their tapes:
-    /// y = r + γ·min over critics of Q'(s', π'(s') + clipped noise) (Fujimoto et al. 2018, eqs. 10 and 14).
-    pub(crate) fn judge(&mut self, step: &Step<'_, P>) {
+    /// y = r + γ·(min over critics of Q'(s', a') - α·log π(a'|s')), where a' is the policy's (Fujimoto et al. 2018, eqs. 10 and 14;
+    /// Haarnoja et al. 2018, eqs. 5 and 6).
+    pub(crate) fn judge<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
         let network = &step.critics.network;
-        step.policy.bind(step.target, &mut self.target);
+        match &mut self.slow {
+            Some(slow) => step.policy.bind(step.slow, slow),
+            None => step.policy.bind(step.params, &mut self.live),
+        }
         for (i, critic) in step.critics.each.iter().enumerate() {
             network.bind(&critic.target, &mut self.target_critics[i]);
             network.bind(&critic.params, &mut self.critics[i]);
@@ -93,7 +129,7 @@ impl<P: Policy> Worker<P> {
                 network.forward(inputs, rows, tape);
                 let (values, stride) = tape.output();
                 for (r, c) in self.value_cotangent[..rows].iter_mut().enumerate() {
-                    let error = values[r * stride] - self.wanted[r];
+                    let error = values[r * stride] - self.least[r];
                     *c = error * (2.0 / step.rows as f32);
                     if i == 0 {
                         self.squares += f64::from(error) * f64::from(error);
@@ -104,73 +140,92 @@ impl<P: Policy> Worker<P> {
         }
     }
 
-    /// What the values of a block should be.
-    fn want(&mut self, step: &Step<'_, P>, block: &Range<usize>) {
+    /// What the values of a block should be, left in `least`.
+    fn want<R: Rule<P>>(&mut self, step: &Step<'_, P, R>, block: &Range<usize>) {
         let (rows, sample) = (block.len(), step.sample);
-        let mean = step.policy.forward(&sample.rows(&sample.next, block), &mut self.target);
+        let tape = self.slow.as_mut().unwrap_or(&mut self.live);
+        let noise = sample.next_noise.get(block.start..).unwrap_or(&[]);
+        let (actions, log_prob) = R::act(step.policy, &sample.rows(&sample.next, block), noise, tape);
+        self.actions.copy_from_slice(actions);
+        let added = noise.get(R::drawn(step.policy) * step.rows..).unwrap_or(&[]);
         for (a, &(spread, most)) in step.smoothing.iter().enumerate() {
-            let noise = &sample.noise[a * step.rows + block.start..][..rows];
-            let actions = self.actions[a * BLOCK..][..rows].iter_mut().zip(&mean[a * BLOCK..]);
-            for ((action, &mean), &z) in actions.zip(noise) {
-                let noisy = mean + (spread * z).clamp(-most, most);
-                *action = step.limits[a].map_or(noisy, |(lo, hi)| noisy.clamp(lo, hi));
+            for (action, &z) in self.actions[a * BLOCK..][..rows].iter_mut().zip(&added[a * step.rows..]) {
+                *action += (spread * z).clamp(-most, most);
             }
         }
+        step.limit(&mut self.actions, rows);
         let inputs = &mut self.inputs[..rows * step.view.width()];
         step.view.fill(sample, &sample.next, block, step.scaling, inputs);
         step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
         for (i, tape) in self.target_critics.iter_mut().enumerate() {
             step.critics.network.forward(inputs, rows, tape);
-            let (values, stride) = tape.output();
-            for (r, wanted) in self.wanted[..rows].iter_mut().enumerate() {
-                let value = values[r * stride];
-                *wanted = if i == 0 { value } else { wanted.min(value) };
+            take_least(i, tape, &mut self.least[..rows], &mut self.judge);
+        }
+        if let Some(log_prob) = log_prob {
+            let temperature = step.rule.temperature();
+            for (least, log_prob) in self.least[..rows].iter_mut().zip(log_prob) {
+                *least -= temperature * log_prob;
             }
         }
         let outcomes = sample.reward[block.clone()].iter().zip(&sample.discount[block.clone()]);
-        for (wanted, (reward, discount)) in self.wanted.iter_mut().zip(outcomes) {
+        for (wanted, (reward, discount)) in self.least.iter_mut().zip(outcomes) {
             *wanted = reward + discount * *wanted;
         }
     }
 
-    /// The gradient of -mean Q(s, π(s)) by the policy's parameters, left on its tape: through the first critic, the law and the
-    /// controller (deterministic policy gradient; Silver et al. 2014, eq. 9).
-    pub(crate) fn improve(&mut self, step: &Step<'_, P>) {
+    /// The gradient of the mean of α·log π(a|s) - min over judges of Q(s, a) by the policy's parameters, where a is the policy's,
+    /// left on its tape: through critics, law and controller (Silver et al. 2014, eq. 9; Haarnoja et al. 2018, eq. 9).
+    pub(crate) fn improve<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
         let (network, sample) = (&step.critics.network, step.sample);
-        step.policy.bind(step.params, &mut self.live);
-        network.bind(&step.critics.each[0].params, &mut self.critics[0]);
-        self.values = 0.0;
+        // Without a slow copy it was bound for the critics' step, and parameters are as they were.
+        if self.slow.is_some() {
+            step.policy.bind(step.params, &mut self.live);
+        }
+        for (tape, critic) in self.critics.iter_mut().zip(&step.critics.each).take(R::JUDGES) {
+            network.bind(&critic.params, tape);
+        }
+        (self.values, self.log_probs) = (0.0, 0.0);
         let (at, width) = (step.view.action_at(), step.view.width());
+        let share = 1.0 / step.rows as f32;
         for block in Sample::blocks(self.rows.clone()) {
             let rows = block.len();
             let moments = sample.rows(&sample.now, &block);
-            let mean = step.policy.forward(&moments, &mut self.live);
-            for (a, limits) in step.limits.iter().enumerate() {
-                for (action, &mean) in self.actions[a * BLOCK..][..rows].iter_mut().zip(&mean[a * BLOCK..]) {
-                    *action = limits.map_or(mean, |(lo, hi)| mean.clamp(lo, hi));
-                }
-            }
+            let noise = sample.now_noise.get(block.start..).unwrap_or(&[]);
+            let (actions, log_prob) = R::act(step.policy, &moments, noise, &mut self.live);
+            self.actions.copy_from_slice(actions);
+            self.log_probs += log_prob.unwrap_or(&[]).iter().take(rows).map(|&p| f64::from(p)).sum::<f64>();
+            step.limit(&mut self.actions, rows);
             let inputs = &mut self.inputs[..rows * width];
             step.view.fill(sample, &sample.now, &block, step.scaling, inputs);
             step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
-            let tape = &mut self.critics[0];
-            network.forward(inputs, rows, tape);
-            let (values, stride) = tape.output();
-            self.values += values.iter().step_by(stride).map(|&value| f64::from(value)).sum::<f64>();
-            self.value_cotangent[..rows].fill(-1.0 / step.rows as f32);
-            network.vjp_inputs(inputs, &self.value_cotangent[..rows], tape);
-            let (pulled, stride) = tape.input_cotangent();
-            for (a, affine) in step.scaling.action.iter().enumerate() {
-                for (r, c) in self.cotangents[a * BLOCK..][..rows].iter_mut().enumerate() {
-                    let pulled = pulled[r * stride + at + a] / affine.scale;
-                    // Beyond a limit nothing changes on the way out; the way back is open.
-                    let mean = mean[a * BLOCK + r];
-                    let stuck = step.limits[a]
-                        .is_some_and(|(lo, hi)| (mean > hi && pulled < 0.0) || (mean < lo && pulled > 0.0));
-                    *c = if stuck { 0.0 } else { pulled };
+            for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {
+                network.forward(inputs, rows, tape);
+                take_least(i, tape, &mut self.least[..rows], &mut self.judge);
+            }
+            self.values += self.least[..rows].iter().map(|&value| f64::from(value)).sum::<f64>();
+            self.cotangents.fill(0.0);
+            for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {
+                for (c, &judge) in self.value_cotangent[..rows].iter_mut().zip(&self.judge) {
+                    *c = if judge == i { -share } else { 0.0 };
+                }
+                network.vjp_inputs(inputs, &self.value_cotangent[..rows], tape);
+                let (pulled, stride) = tape.input_cotangent();
+                for (a, affine) in step.scaling.action.iter().enumerate() {
+                    for (r, c) in self.cotangents[a * BLOCK..][..rows].iter_mut().enumerate() {
+                        *c += pulled[r * stride + at + a] / affine.scale;
+                    }
                 }
             }
-            step.policy.vjp(&moments, &self.cotangents, &mut self.live);
+            // Beyond a limit nothing changes on the way out; the way back is open.
+            for (a, limits) in step.limits.iter().enumerate() {
+                let Some((lo, hi)) = *limits else { continue };
+                for (c, &action) in self.cotangents[a * BLOCK..][..rows].iter_mut().zip(&actions[a * BLOCK..]) {
+                    if (action > hi && *c < 0.0) || (action < lo && *c > 0.0) {
+                        *c = 0.0;
+                    }
+                }
+            }
+            R::pull(step.policy, &moments, &self.cotangents, share * step.rule.temperature(), &mut self.live);
         }
     }
 

@@ -45,6 +45,7 @@ fn policy(law: Law, place: Placement, environment: &dyn Environment) -> Hardware
         hidden: vec![32, 32],
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,

@@ -35,6 +35,7 @@ fn policy(law: &Law, env: &EnvSpec, squash: bool, placements: Vec<Placement>) ->
         hidden: vec![32, 32],
         activation: Activation::Tanh,
         squash,
+        state_dependent_std: false,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,

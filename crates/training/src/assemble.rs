@@ -238,6 +238,9 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
             ActivationKind::Relu => Activation::Relu,
         },
         squash: spec.controller.squash,
+        // A search of all parameters has no use for the spread of one learner.
+        state_dependent_std: spec.learner.state_dependent_std()
+            && (!spec.method.searches() || spec.method.trains_inside()),
         observation_center: spec.controller.observation_center.clone(),
         observation_scale: spec.controller.observation_scale.clone(),
         sees_design: spec.controller.sees_design,

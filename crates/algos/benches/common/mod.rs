@@ -18,6 +18,7 @@ fn spec(law: Law, hidden: &[usize], center: Vec<f64>, scale: Vec<f64>, effort: f
         hidden: hidden.to_vec(),
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: center,
         observation_scale: scale,
         sees_design: false,

@@ -91,6 +91,7 @@ pub(crate) fn knob(horizon: usize, mean: f64, spread: Spread, sees_design: bool)
         hidden: vec![],
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: vec![0.0],
         observation_scale: vec![1.0],
         sees_design,

@@ -37,6 +37,7 @@ fn policy_of(placements: Vec<Placement>) -> (MassSpring, Arc<HardwarePolicy>) {
         hidden: vec![8, 8],
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: vec![0.1, 0.0],
         observation_scale: vec![0.1, 0.5],
         sees_design: false,

@@ -3,7 +3,7 @@
 use hwasp_diff::{MlpTape, ProgramTape};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{HardwarePolicy, ParamKind, Policy};
+use super::{HardwarePolicy, ParamKind, Policy, spread};
 use crate::gaussian;
 use crate::streams::Stream;
 
@@ -24,7 +24,9 @@ pub struct Actor<'p> {
     unsampled: Vec<f64>,
     log_prob: Vec<f32>,
     std: Vec<f64>,
-    /// Σ log σ + A/2·log 2π of what is sampled at every step, the constant part of the log-probability.
+    /// How many components of the action noise is added to: all, or all but the commands where they are drawn before the law.
+    noisy: usize,
+    /// Σ log σ + A/2·log 2π of what noise is added to at every step, the constant part of the log-probability.
     log_norm: f64,
     /// The same of what is drawn once an episode.
     draw_norm: f64,
@@ -53,6 +55,7 @@ impl<'p> Actor<'p> {
         let layout = &policy.composition.layout;
         let design_mean: Vec<f64> = layout.sampled.iter().map(|&i| design[i]).collect();
         let draw_norm = gaussian::log_norm(&log_std[..layout.drawn]);
+        let noisy = if policy.spec().state_dependent_std { actions - layout.commands.len() } else { actions };
         Self {
             policy,
             controller,
@@ -63,7 +66,8 @@ impl<'p> Actor<'p> {
             unsampled: vec![0.0; layout.unsampled.len() * max],
             log_prob: vec![0.0; max],
             std: log_std.iter().map(|&s| f64::from(s).exp()).collect(),
-            log_norm: gaussian::log_norm(&log_std[layout.drawn..]),
+            noisy,
+            log_norm: gaussian::log_norm(&log_std[layout.drawn..noisy]),
             draw_norm,
             drawn: design_mean[..layout.drawn].repeat(max),
             draw_log_prob: vec![(0.0 - draw_norm) as f32; max],
@@ -97,10 +101,20 @@ impl<'p> Actor<'p> {
         let layout = &self.policy.composition.layout;
         let (commands, states, max) = (self.policy.commands.len(), self.policy.state_dim(), self.max);
         self.policy.controller.forward(obs, rows, &mut self.controller);
+        self.log_prob[..rows].fill(-self.log_norm as f32);
+        let mut noise = noise;
         let (output, width) = self.controller.output();
         for (r, row) in output.chunks_exact(width).enumerate() {
             for j in 0..commands {
-                self.columns[j * max + r] = f64::from(row[j]);
+                self.columns[j * max + r] = if self.policy.spec().state_dependent_std {
+                    let z = draw(noise.as_deref_mut(), r) as f32;
+                    let squash = self.policy.spec().squash;
+                    let (command, _, log_prob) = spread::draw(row[j], row[commands + j], z, squash);
+                    self.log_prob[r] += log_prob;
+                    f64::from(command)
+                } else {
+                    f64::from(row[j])
+                };
             }
         }
         let unsampled = layout.unsampled.len();
@@ -113,10 +127,8 @@ impl<'p> Actor<'p> {
         }
         self.columns[commands * max..][..states * max].copy_from_slice(state);
         let actions = layout.len();
-        self.log_prob[..rows].fill(-self.log_norm as f32);
         // Design parameters in the action come first: the law sees the sample.
         let (sampled, drawn) = (layout.sampled.len(), layout.drawn);
-        let mut noise = noise;
         for r in 0..rows {
             for j in 0..sampled {
                 let value = if j < drawn {
@@ -133,10 +145,13 @@ impl<'p> Actor<'p> {
         }
         self.policy.composition.program.forward(&self.columns, max, rows, &mut self.law, &mut self.mean, max);
         for r in 0..rows {
-            for j in sampled..actions {
+            for j in sampled..self.noisy {
                 let z = draw(noise.as_deref_mut(), r);
                 self.action[r * actions + j] = self.mean[j * max + r] + self.std[j] * z;
                 self.log_prob[r] -= (0.5 * z * z) as f32;
+            }
+            for j in self.noisy..actions {
+                self.action[r * actions + j] = self.mean[j * max + r];
             }
         }
     }

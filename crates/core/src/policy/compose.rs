@@ -16,6 +16,11 @@ pub struct PolicySpec {
     pub activation: Activation,
     /// Whether the output passes a tanh, so that it covers the motors' range and no more.
     pub squash: bool,
+    /// Whether the controller tells how widely its commands spread, too: it has twice as many outputs, means first, then log
+    /// standard deviations, both of what goes into the squash and as shares of half a motor's range. Commands are drawn before the
+    /// law then, so that the law sees the draw ([`Reparameterised`](super::Reparameterised)); `noise.command` is where the spread
+    /// begins.
+    pub state_dependent_std: bool,
     /// The controller sees (observation - centre)/scale, per component.
     pub observation_center: Vec<f64>,
     /// See `observation_center`.

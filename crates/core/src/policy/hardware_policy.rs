@@ -6,6 +6,7 @@ use hwasp_diff::{Activation, Mlp, MlpTape, Program, ProgramTape};
 use rand::RngExt;
 
 use super::compose::{Composition, PolicySpec};
+use super::spread::{CommandTape, Reparameterised};
 use super::{Normalizer, ParamGroup, ParamKind, Policy, Rows};
 use crate::design::DesignSpace;
 use crate::environment::{CommandPort, EnvSpec};
@@ -42,6 +43,8 @@ pub struct PolicyTape {
     /// Means, and their tangents.
     mean: Vec<f32>,
     mean_tangent: Vec<f32>,
+    /// How the commands were drawn, where the controller tells their spread.
+    drawn: Option<CommandTape>,
     /// Cotangents of the controller's outputs, row by row.
     output_cotangent: Vec<f32>,
     max_rows: usize,
@@ -54,8 +57,10 @@ impl HardwarePolicy {
         let (observations, space) = (env.observation.len(), spec.law.design());
         let mut sizes = vec![observations + if spec.sees_design { space.len() } else { 0 }];
         sizes.extend(&spec.hidden);
-        sizes.push(env.command.len());
-        let output = if spec.squash { Activation::Tanh } else { Activation::Identity };
+        sizes.push(env.command.len() * if spec.state_dependent_std { 2 } else { 1 });
+        // Of a spread, what is squashed is the draw.
+        let squash = spec.squash && !spec.state_dependent_std;
+        let output = if squash { Activation::Tanh } else { Activation::Identity };
         let controller = Mlp::new(&sizes, spec.activation, output);
         let mut groups = Vec::new();
         let mut at = 0;
@@ -99,6 +104,14 @@ impl HardwarePolicy {
     pub fn init(&self, seed: u64, output_gain: f64) -> Vec<f32> {
         let mut weights = stream(seed, Purpose::Weights, 0, 0);
         let mut params = self.controller.init(output_gain, || weights.random::<f64>());
+        if self.spec.state_dependent_std {
+            let (_, biases) = self.controller.last_layer();
+            let log_stds = &mut params[biases][self.commands.len()..];
+            for (bias, noise) in log_stds.iter_mut().zip(&self.spec.noise.command) {
+                // Of half the range.
+                *bias = (2.0 * noise.std).ln() as f32;
+            }
+        }
         if self.spec.normalize.is_some() {
             let scaling = self.spec.observation_center.iter().chain(&self.spec.observation_scale);
             params.extend(scaling.map(|&x| x as f32));
@@ -157,6 +170,22 @@ impl HardwarePolicy {
         let wide = |values: &[f32]| values.iter().map(|&x| f64::from(x)).collect();
         let (center, scale) = params[self.normalizer_params()].split_at(spec.observation_center.len());
         Normalizer::new(wide(center), wide(scale), spec.normalize)
+    }
+
+    /// The parameters of the same controller without the spread of its commands ([`PolicySpec::state_dependent_std`]), from its
+    /// part of a parameter vector: its means.
+    pub fn without_spread(&self, controller_params: &[f32]) -> Vec<f32> {
+        if !self.spec.state_dependent_std {
+            return controller_params.to_vec();
+        }
+        let ((weights, biases), commands) = (self.controller.last_layer(), self.commands.len());
+        let mut params = controller_params[..weights.start].to_vec();
+        for row in controller_params[weights].chunks_exact(2 * commands) {
+            params.extend_from_slice(&row[..commands]);
+        }
+        params.extend_from_slice(&controller_params[biases.clone()][..commands]);
+        params.extend_from_slice(&controller_params[biases.end..]);
+        params
     }
 
     /// The controller.
@@ -233,12 +262,16 @@ fn put_column(column: &[f32], width: usize, j: usize, rows: &mut [f32]) {
 
 impl PolicyTape {
     /// Lays out the law's columns of a block.
-    fn fill_columns(&mut self, policy: &HardwarePolicy, rows: &Rows<'_>) {
+    fn fill_columns(&mut self, policy: &HardwarePolicy, rows: &Rows<'_>, noise: Option<&[f32]>) {
         let (count, stride) = (rows.count, self.max_rows);
         let commands = policy.commands.len();
         let (output, width) = self.controller.output();
-        for (j, column) in self.columns.chunks_exact_mut(stride).take(commands).enumerate() {
-            take_column(output, width, j, &mut column[..count]);
+        if let Some(drawn) = &mut self.drawn {
+            drawn.draw((output, width), count, noise.map(|noise| (noise, rows.stride)), &mut self.columns);
+        } else {
+            for (j, column) in self.columns.chunks_exact_mut(stride).take(commands).enumerate() {
+                take_column(output, width, j, &mut column[..count]);
+            }
         }
         let state = self.columns[commands * stride..].chunks_exact_mut(stride).take(policy.state_dim);
         for (s, to) in state.enumerate() {
@@ -252,6 +285,57 @@ impl PolicyTape {
                 *to = from.clamp(lo as f32, hi as f32);
             }
         }
+    }
+}
+
+impl HardwarePolicy {
+    /// Controller and law over a block, with commands as they are drawn; without noise they are the means.
+    fn pass(&self, rows: &Rows<'_>, noise: Option<&[f32]>, tape: &mut PolicyTape) {
+        self.controller.forward(rows.obs, rows.count, &mut tape.controller);
+        tape.fill_columns(self, rows, noise);
+        let stride = tape.max_rows;
+        self.composition.program.forward(&tape.columns, stride, rows.count, &mut tape.law, &mut tape.mean, stride);
+    }
+
+    /// The way back of the last [`pass`](Self::pass): of actions, and of log-probabilities where commands were drawn.
+    fn pull(&self, rows: &Rows<'_>, cotangent: &[f32], of_log_prob: f32, tape: &mut PolicyTape) {
+        let stride = tape.max_rows;
+        self.composition.program.vjp(
+            &tape.columns,
+            stride,
+            rows.count,
+            cotangent,
+            stride,
+            &mut tape.law,
+            &mut tape.column_derivatives,
+            stride,
+        );
+        let (commands, width) = (self.commands.len(), self.controller.outputs());
+        let outputs = &mut tape.output_cotangent[..rows.count * width];
+        if let Some(drawn) = &tape.drawn {
+            drawn.pull((&tape.columns, &tape.column_derivatives), of_log_prob, rows.count, outputs);
+        } else {
+            for (j, column) in tape.column_derivatives.chunks_exact(stride).take(commands).enumerate() {
+                put_column(&column[..rows.count], commands, j, outputs);
+            }
+        }
+        self.controller.vjp(rows.obs, outputs, &mut tape.controller);
+    }
+}
+
+impl Reparameterised for HardwarePolicy {
+    fn drawn_commands(&self) -> usize {
+        self.commands.len()
+    }
+
+    fn sample<'t>(&self, rows: &Rows<'_>, noise: &[f32], tape: &'t mut PolicyTape) -> (&'t [f32], &'t [f32]) {
+        self.pass(rows, Some(noise), tape);
+        let drawn = tape.drawn.as_ref().expect("the controller of this policy tells no spread of its commands");
+        (&tape.mean, &drawn.log_prob)
+    }
+
+    fn vjp_sample(&self, rows: &Rows<'_>, cotangent: &[f32], of_log_prob: f32, tape: &mut PolicyTape) {
+        self.pull(rows, cotangent, of_log_prob, tape);
     }
 }
 
@@ -317,7 +401,11 @@ impl Policy for HardwarePolicy {
             columns,
             mean_tangent: mean.clone(),
             mean,
-            output_cotangent: vec![0.0; self.commands.len() * max_rows],
+            drawn: self
+                .spec
+                .state_dependent_std
+                .then(|| CommandTape::new(self.commands.len(), self.spec.squash, max_rows)),
+            output_cotangent: vec![0.0; self.controller.outputs() * max_rows],
             max_rows,
         }
     }
@@ -333,31 +421,12 @@ impl Policy for HardwarePolicy {
     }
 
     fn forward<'t>(&self, rows: &Rows<'_>, tape: &'t mut PolicyTape) -> &'t [f32] {
-        self.controller.forward(rows.obs, rows.count, &mut tape.controller);
-        tape.fill_columns(self, rows);
-        let stride = tape.max_rows;
-        self.composition.program.forward(&tape.columns, stride, rows.count, &mut tape.law, &mut tape.mean, stride);
+        self.pass(rows, None, tape);
         &tape.mean
     }
 
     fn vjp(&self, rows: &Rows<'_>, cotangent: &[f32], tape: &mut PolicyTape) {
-        let stride = tape.max_rows;
-        self.composition.program.vjp(
-            &tape.columns,
-            stride,
-            rows.count,
-            cotangent,
-            stride,
-            &mut tape.law,
-            &mut tape.column_derivatives,
-            stride,
-        );
-        let commands = self.commands.len();
-        let outputs = &mut tape.output_cotangent[..rows.count * commands];
-        for (j, column) in tape.column_derivatives.chunks_exact(stride).take(commands).enumerate() {
-            put_column(&column[..rows.count], commands, j, outputs);
-        }
-        self.controller.vjp(rows.obs, outputs, &mut tape.controller);
+        self.pull(rows, cotangent, 0.0, tape);
     }
 
     fn gradient(&self, tape: &mut PolicyTape, gradient: &mut [f32]) {
@@ -382,7 +451,13 @@ impl Policy for HardwarePolicy {
         let (output, width) = tape.controller.tangent();
         tape.column_derivatives.fill(0.0);
         for (j, column) in tape.column_derivatives.chunks_exact_mut(stride).take(self.commands.len()).enumerate() {
-            take_column(output, width, j, &mut column[..rows.count]);
+            let column = &mut column[..rows.count];
+            take_column(output, width, j, column);
+            if let Some(drawn) = &tape.drawn {
+                for (tangent, &command) in column.iter_mut().zip(&tape.columns[j * stride..]) {
+                    *tangent *= drawn.slope(command);
+                }
+            }
         }
         self.composition.program.jvp(
             &tape.columns,

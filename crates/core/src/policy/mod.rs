@@ -8,12 +8,14 @@ mod compose;
 mod hardware_policy;
 mod noise;
 mod normalizer;
+mod spread;
 
 pub use actor::Actor;
 pub use compose::PolicySpec;
 pub use hardware_policy::{HardwarePolicy, PolicyTape};
 pub use noise::{Anneal, Noise, Spread};
 pub use normalizer::Normalizer;
+pub use spread::Reparameterised;
 
 use std::ops::Range;
 

@@ -139,6 +139,7 @@ pub(crate) fn policy_spec(placements: Vec<Placement>) -> PolicySpec {
         hidden: vec![7, 5],
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: vec![0.1, 0.0, -0.2],
         observation_scale: vec![0.5, 1.0, 2.0],
         sees_design: false,

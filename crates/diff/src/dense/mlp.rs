@@ -89,6 +89,17 @@ pub struct MlpTape<F> {
     rows: usize,
 }
 
+/// How far the passes of a tape go.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Forward alone.
+    Forward,
+    /// Back to all parameters.
+    Back,
+    /// Back to the inputs as well.
+    Inputs,
+}
+
 fn padded<F: Float>(n: usize) -> usize {
     n.next_multiple_of(F::WIDTH)
 }
@@ -157,15 +168,20 @@ impl Mlp {
 
     /// Working memory for blocks of up to `max_rows` rows.
     pub fn tape<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
-        self.tape_for(max_rows, false)
+        self.tape_for(max_rows, Way::Back)
+    }
+
+    /// The same for [`forward`](Self::forward) alone: binding parameters costs less.
+    pub fn tape_forward<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
+        self.tape_for(max_rows, Way::Forward)
     }
 
     /// The same for whoever wants the [cotangents of the inputs](MlpTape::input_cotangent) as well.
     pub fn tape_with_inputs<F: Float>(&self, max_rows: usize) -> MlpTape<F> {
-        self.tape_for(max_rows, true)
+        self.tape_for(max_rows, Way::Inputs)
     }
 
-    fn tape_for<F: Float>(&self, max_rows: usize, inputs: bool) -> MlpTape<F> {
+    fn tape_for<F: Float>(&self, max_rows: usize, way: Way) -> MlpTape<F> {
         let mut widest = 0;
         let layers = self
             .layers()
@@ -176,7 +192,12 @@ impl Mlp {
                 widest = widest.max(stride).max(padded::<F>(l.inputs));
                 let weights = Aligned::zeroed(long * short);
                 let bias = Aligned::zeroed(stride);
-                let transposed = if l.narrow || (l.at == 0 && !inputs) { 0 } else { l.outputs * padded::<F>(l.inputs) };
+                let back = match way {
+                    Way::Forward => false,
+                    Way::Back => l.at > 0,
+                    Way::Inputs => true,
+                };
+                let transposed = if back && !l.narrow { l.outputs * padded::<F>(l.inputs) } else { 0 };
                 let output = Aligned::zeroed(max_rows * stride);
                 LayerTape {
                     transposed: Aligned::zeroed(transposed),
@@ -194,7 +215,8 @@ impl Mlp {
             })
             .collect();
         let cotangent = Aligned::zeroed(max_rows * widest);
-        let input_cotangent = Aligned::zeroed(if inputs { max_rows * padded::<F>(self.sizes[0]) } else { 0 });
+        let input_cotangent =
+            Aligned::zeroed(if way == Way::Inputs { max_rows * padded::<F>(self.sizes[0]) } else { 0 });
         MlpTape { layers, cotangents: [cotangent.clone(), cotangent], input_cotangent, max_rows, rows: 0 }
     }
 

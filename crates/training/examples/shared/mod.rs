@@ -45,6 +45,7 @@ pub(crate) fn train(
         hidden: vec![32, 32],
         activation: Activation::Tanh,
         squash: true,
+        state_dependent_std: false,
         observation_center: center.to_vec(),
         observation_scale: scale.to_vec(),
         sees_design: false,

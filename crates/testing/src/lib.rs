@@ -42,8 +42,20 @@ pub const OFF_POLICY: Settings = &[
     ("td3.privileged", "true"),
 ];
 
+/// The same with a spread of its commands that it learns.
+pub const SOFT: Settings = &[
+    ("learner.algorithm", "sac"),
+    ("sac.warmup_steps", "1500"),
+    ("sac.replay_frames", "4000"),
+    ("sac.batch_rows", "300"),
+    ("sac.critic_hidden", "[16, 16]"),
+    ("sac.updates_per_step", "0.03"),
+    ("sac.policy_delay", "2"),
+    ("sac.context", "true"),
+];
+
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 14] = [
+pub const KINDS: [(&str, Settings); 17] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -58,6 +70,9 @@ pub const KINDS: [(&str, Settings); 14] = [
     ("cmaes-rl", UNSCALED),
     ("hwasp", OFF_POLICY),
     ("minimal", OFF_POLICY),
+    ("hwasp", SOFT),
+    ("episode", SOFT),
+    ("fixed", SOFT),
 ];
 
 /// The problems and learners that come with the program.

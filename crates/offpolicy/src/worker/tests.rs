@@ -179,7 +179,7 @@ impl<R: Rule<HardwarePolicy>> Scene<R> {
                 self.params[i] = at + by;
                 loss(self).0
             };
-            let slope = (moved(0.002) - moved(-0.002)) / 0.004;
+            let slope = (moved(5e-4) - moved(-5e-4)) / 1e-3;
             self.params[i] = at;
             slope
         });
@@ -298,7 +298,7 @@ fn three_rows_of_sac_by_hand() {
     scene.params = vec![0.5, 0.3, 0.1, -1.0, 0.0];
     scene.set_critics(CRITICS);
     let wide = |x: f32| f64::from(x);
-    let temperature = wide(scene.rule.temperature());
+    let temperature = 0.2;
     let drawn = |y: f64, noise: f64| {
         let (mean, log_std) = (0.5 * y + 0.1, 0.3 * y - 1.0);
         let command = (mean + log_std.exp() * noise).tanh();

@@ -45,7 +45,7 @@ def build():
     """Builds the program and the examples that are timed."""
     for what in [
         ["-p", "hwasp-cli"],
-        ["-p", "hwasp-builtin", "--example", "grasp_rollouts", "--example", "grasp_throughput", "--example", "trpo_update"],
+        ["-p", "hwasp-builtin", "--example", "grasp_rollouts", "--example", "grasp_throughput", "--example", "trpo_update", "--example", "sac_update"],
         ["-p", "hwasp-algos", "--example", "cmaes_evaluations"],
     ]:
         subprocess.run(["cargo", "build", "--release", "--quiet", *what], check=True, cwd=ROOT)

@@ -2,7 +2,7 @@
 """Compares this project's speed with its peers', and writes docs/performance.md. Python 3.11, Linux, 6 GB of disk.
 
     python3 benches/peers/run.py                     # all of it, half an hour on two quiet cores
-    python3 benches/peers/run.py grasp trpo          # some: mass-spring, grasp, trpo, cmaes, cmaes-evaluations
+    python3 benches/peers/run.py grasp trpo          # some: mass-spring, grasp, trpo, sac, cmaes, cmaes-evaluations
     python3 benches/peers/run.py --quick             # a tenth of the work, one turn, printed and not written
 
 The peers come from PyPI in the versions of requirements.txt beside this file, into target/peers (--venv for another
@@ -16,10 +16,11 @@ import cmaes_evaluations
 import document
 import grasp
 import mass_spring
+import sac
 import trpo
 from programs import TARGET, Peers, build
 
-COMPARISONS = {"mass-spring": mass_spring, "grasp": grasp, "trpo": trpo, "cmaes": cmaes,
+COMPARISONS = {"mass-spring": mass_spring, "grasp": grasp, "trpo": trpo, "sac": sac, "cmaes": cmaes,
                "cmaes-evaluations": cmaes_evaluations}
 
 

@@ -219,6 +219,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
             params: &self.learned.params,
             slow: &self.learned.slow,
             critics: &self.learned.critics,
+            version: self.learned.updates,
             sample: &self.sample,
             scaling: &self.learned.scaling,
             view: self.view,
@@ -229,6 +230,13 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         executor.for_each(self.workers.len(), &|i| {
             act(&mut self.workers[i].lock().unwrap_or_else(PoisonError::into_inner), &step);
         });
+    }
+
+    /// The workers' parameters are not those at hand any more.
+    fn forget(&mut self) {
+        for worker in &mut self.workers {
+            worker.get_mut().unwrap_or_else(PoisonError::into_inner).forget();
+        }
     }
 
     /// A sum over the workers, in their order.
@@ -287,6 +295,7 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
                 Err(error) => {
                     self.learned = before;
                     self.replay.take_back(&undo);
+                    self.forget();
                     return Err(error);
                 }
             }
@@ -303,6 +312,7 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
 
 impl<P: Policy, R: Rule<P>> Persist for OffPolicy<P, R> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
+        self.forget();
         with.part("learned", &mut self.learned)?;
         with.part("replay", &mut self.replay)
     }

@@ -19,6 +19,8 @@ pub(crate) struct Step<'a, P: Policy, R: Rule<P>> {
     pub(crate) params: &'a [f32],
     pub(crate) slow: &'a [f32],
     pub(crate) critics: &'a Critics,
+    /// How often the critics' parameters have changed.
+    pub(crate) version: u64,
     pub(crate) sample: &'a Sample,
     pub(crate) scaling: &'a Scaling,
     pub(crate) view: View,
@@ -63,6 +65,8 @@ pub(crate) struct Worker<P: Policy> {
     slow: Option<P::Tape>,
     target_critics: [MlpTape<f32>; 2],
     pub(crate) critics: [MlpTape<f32>; 2],
+    /// The version of the parameters that each is bound to.
+    bound: [Option<u64>; 2],
     /// What critics see of a block, row by row.
     inputs: Vec<f32>,
     /// Actions of a block and their cotangents, column by column.
@@ -93,6 +97,7 @@ impl<P: Policy> Worker<P> {
             slow: R::SLOW_POLICY.then(|| policy.tape(BLOCK)),
             target_critics: [0, 1].map(|_| network.tape_forward(BLOCK)),
             critics: [0, 1].map(|i| if i < R::JUDGES { network.tape_with_inputs(BLOCK) } else { network.tape(BLOCK) }),
+            bound: [None; 2],
             inputs: vec![0.0; view.width() * BLOCK],
             cotangents: actions.clone(),
             actions,
@@ -116,7 +121,7 @@ impl<P: Policy> Worker<P> {
         }
         for (i, critic) in step.critics.each.iter().enumerate() {
             network.bind(&critic.target, &mut self.target_critics[i]);
-            network.bind(&critic.params, &mut self.critics[i]);
+            self.bind_critic(step, i);
         }
         self.squares = 0.0;
         for block in Sample::blocks(self.rows.clone()) {
@@ -137,6 +142,21 @@ impl<P: Policy> Worker<P> {
                 }
                 network.vjp(inputs, &self.value_cotangent[..rows], tape);
             }
+        }
+    }
+
+    /// The critics at hand are others now, whatever their version.
+    pub(crate) fn forget(&mut self) {
+        self.bound = [None; 2];
+    }
+
+    /// Takes over a critic's parameters, unless they are those that it has, and clears its sums.
+    fn bind_critic<R: Rule<P>>(&mut self, step: &Step<'_, P, R>, i: usize) {
+        let (network, tape) = (&step.critics.network, &mut self.critics[i]);
+        if self.bound[i].replace(step.version) == Some(step.version) {
+            network.clear(tape);
+        } else {
+            network.bind(&step.critics.each[i].params, tape);
         }
     }
 
@@ -181,8 +201,8 @@ impl<P: Policy> Worker<P> {
         if self.slow.is_some() {
             step.policy.bind(step.params, &mut self.live);
         }
-        for (tape, critic) in self.critics.iter_mut().zip(&step.critics.each).take(R::JUDGES) {
-            network.bind(&critic.params, tape);
+        for i in 0..R::JUDGES {
+            self.bind_critic(step, i);
         }
         (self.values, self.log_probs) = (0.0, 0.0);
         let (at, width) = (step.view.action_at(), step.view.width());

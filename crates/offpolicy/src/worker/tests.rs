@@ -142,6 +142,7 @@ impl<R: Rule<HardwarePolicy>> Scene<R> {
             params: &self.params,
             slow: &self.params,
             critics: &self.critics,
+            version: 0,
             sample: &self.sample,
             scaling: &self.scaling,
             view: self.view,

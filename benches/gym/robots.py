@@ -19,6 +19,11 @@ ROBOTS = {
     "inverted_double_pendulum": "InvertedDoublePendulum-v5",
     "reacher": "Reacher-v5",
 }
+# Robots whose bodies are designed.
+DESIGNED = {
+    "half_cheetah_legs": "HalfCheetah-v5",
+    "walker2d_lengths": "Walker2d-v5",
+}
 CONTROLLER = """
 [controller]
 hidden = [64, 64]
@@ -43,6 +48,14 @@ epochs = 10
 minibatch_rows = 64
 normalize_advantages = false
 recompute_advantages = true
+""",
+    # The defaults of Stable-Baselines3, on observations as they are; warm-up as RL Baselines3 Zoo has it.
+    "sac": """
+[learner]
+algorithm = "sac"
+
+[sac]
+warmup_steps = 10_000
 """,
     "trpo": """
 [learner]

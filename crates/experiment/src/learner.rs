@@ -41,7 +41,9 @@ impl LearnerSettings {
             let mut section = table(kind.name());
             let mut own = kind.defaults(train.rows(), &self.settings[..i]);
             read(&mut *own, &mut section);
-            if let Some(fault) = kind.fault(&*own, train.rows(), &train.portion()).filter(|_| sound) {
+            // What the others are told may wait until they are asked for.
+            let asked = sound && i == chosen;
+            if let Some(fault) = kind.fault(&*own, train.rows(), &train.portion()).filter(|_| asked) {
                 section.clash(fault.key, fault.message, &fault.hint);
             }
             self.settings[i] = own;

@@ -36,7 +36,7 @@ wrong_files! {
     key_of_another_table: "[train]\nclip_ratio = 0.2\n";
     rows_of_the_curvature: "[trpo]\nfisher_rows = 1.5\nmax_kl = 0\n[baseline]\nminibatch_rows = 5000\n";
     near_a_key_of_another_table: "[train]\nlearning_rat = 0.2\n";
-    key_nobody_knows: "[design]\ntemperature = 3\n";
+    key_nobody_knows: "[design]\nwarmth = 3\n";
     misspelt_table: "[contoller]\nhidden = [8]\n";
     table_that_is_a_number: "ppo = 3\n";
     number_out_of_range: "[ppo]\nclip_ratio = 2\ngae_lambda = -1e-9\nlearning_rate = nan\n";
@@ -61,7 +61,7 @@ wrong_files! {
     scaled_twice: "[controller]\nnormalize_observations = true\nobservation_scale = [0.1, 0.5]\n";
     statistics_of_a_search: "method = \"ars\"\n[controller]\nnormalize_observations = true\n[methods.cmaes-rl.controller]\nnormalize_observations = true\n";
     experience_measured_anew: "[learner]\nalgorithm = \"td3\"\n[controller]\nnormalize_observations = true\n[train]\nreward_scaling = true\n";
-    replays_that_hold_too_little: "[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
+    replays_that_hold_too_little: "[learner]\nalgorithm = 'td3'\n[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
     fewer_steps_than_lanes: "[train]\nsteps_per_iteration = 3\nepisodes_per_iteration = 4\n[ppo]\nminibatch_rows = 30\n";
     unknown_method: "[methods.hwsap.ppo]\nepochs = 3\n";
     fault_in_the_tables_of_another_method: "[methods.minimal.ppo]\nepohcs = 3\nclip_ratio = 7\n[methods]\nfixed = 1\n";
@@ -146,7 +146,7 @@ fn options() {
 
 #[test]
 fn hints_name_the_keys_of_this_problem_alone() {
-    let told = option_faults("pendulum", &["task.temperature=3"]);
+    let told = option_faults("pendulum", &["task.warmth=3"]);
     assert!(told.ends_with("the keys here are `problem`, `horizon`"), "{told}");
 }
 

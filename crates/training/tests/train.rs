@@ -260,3 +260,20 @@ fn reach_is_learned() {
     let mean = trained.evaluation.discounted_return.mean;
     assert!(mean > -3.0, "{mean}");
 }
+
+/// A tenth of the steps, from old experience.
+#[test]
+fn reach_is_learned_from_old_experience() {
+    for (learner, settings) in [
+        ("td3", &[("td3.critic_hidden", "[32, 32]"), ("td3.warmup_steps", "600"), ("td3.learning_rate", "1e-3")]),
+        ("sac", &[("sac.critic_hidden", "[32, 32]"), ("sac.warmup_steps", "600"), ("sac.learning_rate", "1e-3")]),
+    ] {
+        let train =
+            [("learner.algorithm", learner), ("train.env_steps", "12000"), ("train.episodes_per_iteration", "4")];
+        let assembly = assembly("reach", None, &[&train[..], &settings[..]].concat());
+        let trained = finish(&assembly, &mut ());
+        let gear = assembly.policy.design(&trained.params)[0];
+        let mean = trained.evaluation.discounted_return.mean;
+        assert!((gear - 1.0).abs() < 0.05 && mean > -2.5, "{learner}: gear {gear}, return {mean}");
+    }
+}

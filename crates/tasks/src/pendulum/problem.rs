@@ -49,6 +49,7 @@ impl Problem for PendulumProblem {
         vec![
             Preset::new("pendulum", include_str!("../../../../experiments/pendulum.toml")),
             Preset::new("pendulum-trpo", include_str!("../../../../experiments/pendulum-trpo.toml")),
+            Preset::new("pendulum-sac", include_str!("../../../../experiments/pendulum-sac.toml")),
         ]
     }
 }

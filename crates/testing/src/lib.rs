@@ -43,7 +43,7 @@ pub const OFF_POLICY: Settings = &[
 ];
 
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 14] = [
+pub const KINDS: [(&str, Settings); 16] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -54,6 +54,8 @@ pub const KINDS: [(&str, Settings); 14] = [
     ("cmaes-rl", &[("cmaes.popsize", "5"), ("train.env_steps", "24000")]),
     ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000"), ("learner.algorithm", "trpo")]),
     ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
+    ("bo-rl", &[("bo.popsize", "3"), ("bo.initial_points", "2"), ("train.env_steps", "24000")]),
+    ("random-rl", &[("random.popsize", "3"), ("train.env_steps", "10000")]),
     ("hwasp", UNSCALED),
     ("cmaes-rl", UNSCALED),
     ("hwasp", OFF_POLICY),

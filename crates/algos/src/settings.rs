@@ -16,8 +16,8 @@ pub const MOST_LAYERS: usize = 16;
 pub const WIDEST_LAYER: usize = 4096;
 /// The most candidates or directions of a generation.
 const MOST_CANDIDATES: usize = 100_000;
-/// The most candidates of a Bayesian search that are chosen together or without a model.
-const MOST_BATCH: usize = 1000;
+/// The most candidates that a Bayesian search chooses together, each by a model of its own.
+const MOST_BATCH: usize = 100;
 /// Limits of Adam's learning rate.
 pub const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
@@ -202,7 +202,7 @@ impl Settings for BoConfig {
         fields.count("popsize", &mut self.popsize, 1..=MOST_BATCH, about);
         let about =
             "candidates all over the space before the model chooses, in whole generations; 0: 2n + 2 for n parameters";
-        fields.count("initial_points", &mut self.initial_points, 0..=MOST_BATCH, about);
+        fields.count("initial_points", &mut self.initial_points, 0..=1000, about);
     }
 }
 

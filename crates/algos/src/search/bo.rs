@@ -23,8 +23,8 @@ use crate::archive::{Exchange, Persist, StateError};
 const FAILED: f64 = f64::MIN;
 /// Scores beyond this would overflow in squares.
 const LARGEST: f64 = 1e150;
-/// The most points that a saved state may have: a model of more takes minutes and gigabytes.
-const MOST_POINTS: usize = 5000;
+/// The most points that a saved state may have: each factorisation of a model of so many takes seconds.
+const MOST_POINTS: usize = 2000;
 
 /// Settings of [`Bo`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -150,7 +150,7 @@ impl Persist for Bo {
             return Err(with.refuse(
                 "scores",
                 count as f64,
-                "as many as the generations have candidates, at most 5000",
+                "as many as the generations have candidates, at most 2000",
             ));
         }
         let mut points = if with.loads() { vec![0.0; n * self.scores.len()] } else { self.points.concat() };

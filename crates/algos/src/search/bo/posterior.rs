@@ -23,17 +23,15 @@ pub(super) struct Posterior<'a> {
 
 /// The covariance of points with noisy scores, factorised; the last ones, from `believed` on, have no noise.
 pub(super) fn factorised(kernel: &Kernel, points: &[&[f64]], believed: usize) -> Cholesky<f64, Dyn> {
-    let mut covariance = DMatrix::zeros(points.len(), points.len());
-    // The factorisation reads the lower triangle alone.
-    for j in 0..points.len() {
-        for i in j..points.len() {
-            covariance[(i, j)] = kernel.covariance(points[i], points[j]);
-        }
-        covariance[(j, j)] += if j < believed { kernel.noise } else { BELIEVED };
-    }
     let with = |jitter: f64| {
-        let mut covariance = covariance.clone();
-        (0..points.len()).for_each(|i| covariance[(i, i)] += jitter);
+        let mut covariance = DMatrix::zeros(points.len(), points.len());
+        // The factorisation reads the lower triangle alone.
+        for j in 0..points.len() {
+            for i in j..points.len() {
+                covariance[(i, j)] = kernel.covariance(points[i], points[j]);
+            }
+            covariance[(j, j)] += jitter + if j < believed { kernel.noise } else { BELIEVED };
+        }
         covariance.cholesky()
     };
     JITTER.into_iter().find_map(with).expect("a covariance of limited condition, with a hundredth on its diagonal")

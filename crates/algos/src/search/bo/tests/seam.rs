@@ -96,7 +96,7 @@ fn refuses_states_that_cannot_be() {
     };
     assert_eq!(
         told("generation", Array::U64(vec![1])),
-        "`scores` of the saved state is 8, which is not as many as the generations have candidates, at most 5000"
+        "`scores` of the saved state is 8, which is not as many as the generations have candidates, at most 2000"
     );
     assert_eq!(told("points", Array::F64(vec![0.5; 15])), "`points` of the saved state has 15 elements instead of 16");
     assert_eq!(

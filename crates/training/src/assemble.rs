@@ -41,8 +41,8 @@ pub enum AssembleError {
     Elsewhere(String),
     /// A search whose budget does not hold one generation.
     #[error(
-        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \
-         steps; train for longer, or with fewer candidates or shorter ones"
+        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidate{} of {each} \
+         steps; train for longer, or with fewer candidates or shorter ones", if *.popsize == 1 { "" } else { "s" }
     )]
     Budget {
         /// Steps given.

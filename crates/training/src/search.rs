@@ -78,7 +78,7 @@ fn tell(
     let scores: Vec<f64> = scored.iter().map(|s| space.score(s)).collect();
     state.search.tell(&scores)?;
     let sound: Vec<&Returns> = scored.iter().filter_map(|candidate| candidate.returns.as_ref()).collect();
-    let returns = Returns::mean(&sound);
+    let returns = (!sound.is_empty()).then(|| Returns::mean(&sound));
     for (candidate, score) in scored.into_iter().zip(scores) {
         if state.best.as_ref().is_none_or(|(most, _)| score > *most) {
             state.best = Some((score, candidate.params));
@@ -86,7 +86,7 @@ fn tell(
     }
     let policy = &space.assembly.policy;
     let totals = policy.space().totals(&policy.design(&space.params(&state.search.center())));
-    Ok(learned.record(Some(returns), Vec::new(), totals, run)?)
+    Ok(learned.record(returns, Vec::new(), totals, run)?)
 }
 
 /// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed and they may not, it

@@ -94,8 +94,11 @@ fn a_budget_below_one_generation_is_refused() {
         error,
         "method cmaes-rl searches the design, but all of it is fixed; let design.placement be \"action\""
     );
-    let error = assembly("random-rl", &[("train.env_steps", "1199")]).err().unwrap().to_string();
-    assert!(error.contains("1200 steps, for 1 candidates of 1200 steps"), "{error}");
+    let error = assembly("random-rl", &[("train.env_steps", "1300"), ("search.inner_env_steps", "1400")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("1400 steps, for 1 candidate of 1400 steps"), "{error}");
     let error = assembly("bo-rl", &[("train.env_steps", "1202000")]).err().unwrap().to_string();
     assert!(error.starts_with("method bo-rl would train 1001 candidates, and its model bears 1000;"), "{error}");
 }

@@ -15,7 +15,8 @@ use crate::learned::{Clock, Learned, LoopContext};
 use crate::observer::Event;
 use crate::returns::Returns;
 
-/// Searches until the budget does not hold another generation, or not one more candidate, from the beginning or from where a search was interrupted.
+/// Searches until the budget holds no further generation, or no part of one, from the beginning or from where a search was
+/// interrupted.
 pub(crate) fn search(
     assembly: &Assembly,
     run: &mut LoopContext<'_>,

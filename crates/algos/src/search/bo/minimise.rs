@@ -1,5 +1,6 @@
 //! Minima of smooth functions in a box.
 
+use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 /// Pairs of steps and changes of the gradient that are kept.
@@ -37,7 +38,8 @@ pub(super) fn minimise(
             break;
         }
         let mut along = direction(&free, &kept);
-        if !(dot(&along, &free) < 0.0) {
+        // NaN, too, leads nowhere.
+        if dot(&along, &free).partial_cmp(&0.0) != Some(Ordering::Less) {
             kept.clear();
             along = direction(&free, &kept);
         }
@@ -88,7 +90,9 @@ fn direction(gradient: &[f64], kept: &VecDeque<(Vec<f64>, Vec<f64>, f64)>) -> Ve
     }
     if let Some((_, change, curvature)) = kept.front() {
         let scale = curvature / dot(change, change);
-        along.iter_mut().for_each(|a| *a *= scale);
+        for a in &mut along {
+            *a *= scale;
+        }
     }
     for ((step, change, curvature), share) in kept.iter().zip(shares).rev() {
         let back = share - dot(change, &along) / curvature;

@@ -106,6 +106,7 @@ fn direction(gradient: &[f64], kept: &VecDeque<(Vec<f64>, Vec<f64>, f64)>) -> Ve
 mod tests {
     use super::*;
 
+    #[allow(clippy::unnecessary_wraps)] // functions may have no value
     fn rosenbrock(x: &[f64]) -> Evaluation {
         let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
         Some((a * a + 100.0 * b * b, vec![-2.0 * a - 400.0 * b * x[0], 200.0 * b]))

@@ -19,7 +19,7 @@ use hwasp_training::{Assembly, Checkpoint, Event, MetricsRow, Observer, Observer
 const EXPERIMENT: &str = "experiment";
 
 /// The smallest trainings of every kind of thing that learns: method, what is not as in [`tiny`].
-const KINDS: [(&str, &str); 8] = [
+const KINDS: [(&str, &str); 10] = [
     ("hwasp", ""),
     ("hwasp", "learner.algorithm=trpo baseline.kind=linear"),
     ("episode", "controller.sees_design=true"),
@@ -28,6 +28,8 @@ const KINDS: [(&str, &str); 8] = [
     ("ars", "ars.variant=v2-t ars.directions=2"),
     ("cmaes-rl", "cmaes.popsize=4 cmaes.restarts=1 train.env_steps=120"),
     ("ars-rl", "ars.directions=1 baseline.kind=linear train.env_steps=120"),
+    ("bo-rl", "bo.popsize=2 bo.initial_points=2 train.env_steps=120"),
+    ("random-rl", "random.popsize=2 train.env_steps=120"),
 ];
 
 static CATALOGUE: LazyLock<Catalogue> = LazyLock::new(hwasp_builtin::catalogue);

@@ -31,7 +31,10 @@ pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKin
 pub use metrics::Metrics;
 pub use minibatch::BLOCK;
 pub use ppo::{Ppo, PpoConfig, PpoSettings};
-pub use search::{Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter, Stop};
+pub use search::{
+    Ars, ArsConfig, Bo, BoConfig, Cmaes, CmaesConfig, RandomConfig, RandomSearch, Search, SearchError, StateFilter,
+    Stop,
+};
 pub use settings::{
     ArsSettings, ArsVariant, BaselineKind, BaselineSettings, MOST_LAYERS, MOST_ROWS, RATES, WIDEST_LAYER,
 };

@@ -1,12 +1,16 @@
 //! Searches without gradients: ask for candidates, tell their scores. They see vectors and numbers, never an environment.
 
 mod ars;
+mod bo;
 mod cmaes;
 mod filter;
+mod random;
 
 pub use ars::{Ars, ArsConfig};
+pub use bo::{Bo, BoConfig};
 pub use cmaes::{Cmaes, CmaesConfig, Stop};
 pub use filter::StateFilter;
+pub use random::{RandomConfig, RandomSearch};
 
 use thiserror::Error;
 
@@ -24,13 +28,14 @@ pub trait Search: Persist + Send {
     fn ask(&mut self) -> Vec<Vec<f64>>;
 
     /// Takes the scores of the asked candidates, in their order, and goes on to the next generation. A candidate that
-    /// failed has the score `f64::NEG_INFINITY` (or NaN, which counts as that) and ranks last.
+    /// failed has the score `f64::NEG_INFINITY` (or NaN, which counts as that) and ranks last. [`RandomSearch`] and [`Bo`]
+    /// take the scores of the first candidates alone, too.
     ///
     /// # Errors
     /// Where there are not as many scores as candidates, or none of them is a number: the state is then as it was.
     fn tell(&mut self, scores: &[f64]) -> Result<(), SearchError>;
 
-    /// The candidate that the search takes for best: the mean of its distribution.
+    /// The candidate that the search takes for best: the mean of its distribution, where it has one.
     fn center(&self) -> Vec<f64>;
 
     /// Generations told so far.
@@ -122,6 +127,38 @@ fn failed_last(scores: &[f64], expected: usize, generation: u64) -> Result<Vec<f
     let scores: Vec<f64> = scores.iter().map(|&s| if s.is_finite() { s } else { f64::NEG_INFINITY }).collect();
     if scores.iter().all(|s| !s.is_finite()) {
         return Err(SearchError::AllFailed { candidates: expected, generation });
+    }
+    Ok(scores)
+}
+
+/// Whether a start is a point of the unit cube, and a generation has candidates.
+fn check_unit(popsize: usize, start: &[f64]) -> Result<(), SearchError> {
+    if popsize == 0 {
+        return Err(SearchError::Setting { name: "popsize", value: 0.0, limits: "at least 1" });
+    }
+    if start.is_empty() {
+        return Err(SearchError::Setting { name: "dimension", value: 0.0, limits: "at least 1" });
+    }
+    match start.iter().find(|x| !(0.0..=1.0).contains(*x)) {
+        Some(&value) => Err(SearchError::Setting { name: "start", value, limits: "within [0, 1]" }),
+        None => Ok(()),
+    }
+}
+
+/// Scores of the first candidates of a generation, `None` for those that failed; an error where there are none or too many, or
+/// where all failed and none was `scored` before.
+fn sound_or_failed(
+    scores: &[f64],
+    popsize: usize,
+    generation: u64,
+    scored: bool,
+) -> Result<Vec<Option<f64>>, SearchError> {
+    if scores.is_empty() || scores.len() > popsize {
+        return Err(SearchError::Scores { found: scores.len(), expected: popsize });
+    }
+    let scores: Vec<Option<f64>> = scores.iter().map(|&s| s.is_finite().then_some(s)).collect();
+    if !scored && scores.iter().all(Option::is_none) {
+        return Err(SearchError::AllFailed { candidates: scores.len(), generation });
     }
     Ok(scores)
 }

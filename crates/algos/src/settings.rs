@@ -5,7 +5,7 @@ use hwasp_settings::{Fields, Settings, choice};
 
 use crate::baseline::{BaselineConfig, MlpBaselineConfig};
 use crate::ppo::PpoConfig;
-use crate::search::{ArsConfig, CmaesConfig};
+use crate::search::{ArsConfig, BoConfig, CmaesConfig, RandomConfig};
 use crate::trpo::{FisherRows, TrpoConfig};
 
 /// The most rows of an iteration: they are all held in memory.
@@ -16,6 +16,8 @@ pub const MOST_LAYERS: usize = 16;
 pub const WIDEST_LAYER: usize = 4096;
 /// The most candidates or directions of a generation.
 const MOST_CANDIDATES: usize = 100_000;
+/// The most candidates that a Bayesian search chooses together, each by a model of its own.
+const MOST_BATCH: usize = 100;
 /// Limits of Adam's learning rate.
 pub const RATES: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
@@ -191,6 +193,22 @@ impl Settings for CmaesConfig {
         let mut restarts = self.restarts as usize;
         fields.count("restarts", &mut restarts, 0..=20, "restarts with twice the candidates where it stagnates");
         self.restarts = restarts as u32;
+    }
+}
+
+impl Settings for BoConfig {
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        let about = "candidates that are chosen together, and train side by side";
+        fields.count("popsize", &mut self.popsize, 1..=MOST_BATCH, about);
+        let about =
+            "candidates all over the space before the model chooses, in whole generations; 0: 2n + 2 for n parameters";
+        fields.count("initial_points", &mut self.initial_points, 0..=1000, about);
+    }
+}
+
+impl Settings for RandomConfig {
+    fn fields(&mut self, fields: &mut Fields<'_, '_>) {
+        fields.count("popsize", &mut self.popsize, 1..=MOST_CANDIDATES, "candidates that train side by side");
     }
 }
 

@@ -138,6 +138,10 @@ pub(crate) enum MethodArg {
     CmaesRl,
     /// Augmented random search over the design; every candidate trains a controller of its own with PPO
     ArsRl,
+    /// Bayesian optimisation of the design; every candidate trains a controller of its own with PPO
+    BoRl,
+    /// Random designs; every candidate trains a controller of its own with PPO
+    RandomRl,
 }
 
 impl MethodArg {
@@ -151,6 +155,8 @@ impl MethodArg {
             Self::Ars => Method::Ars,
             Self::CmaesRl => Method::CmaesRl,
             Self::ArsRl => Method::ArsRl,
+            Self::BoRl => Method::BoRl,
+            Self::RandomRl => Method::RandomRl,
         }
     }
 }

@@ -41,6 +41,10 @@ pub enum Purpose {
     Replay = 13,
     /// Initial weights of critics.
     Critic = 14,
+    /// Points that fill the space before a Bayesian search chooses.
+    FirstPoints = 15,
+    /// Where a Bayesian search looks for the most improvement: the iteration is the generation, the episode the candidate.
+    Acquisition = 16,
 }
 
 /// The stream of this name.

@@ -32,7 +32,13 @@ impl DesignSettings {
             Method::Episode => Place::Episode,
             Method::Fixed => Place::Fixed,
             // A search moves the parameter, and the plant evaluates the law.
-            Method::Minimal | Method::Cmaes | Method::Ars | Method::CmaesRl | Method::ArsRl => Place::Action,
+            Method::Minimal
+            | Method::Cmaes
+            | Method::Ars
+            | Method::CmaesRl
+            | Method::ArsRl
+            | Method::BoRl
+            | Method::RandomRl => Place::Action,
         };
         Self {
             placement,

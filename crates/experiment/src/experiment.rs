@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
+use hwasp_algos::{ArsSettings, BaselineSettings, BoConfig, CmaesConfig, RandomConfig};
 use hwasp_settings::{Faults, Files, Item, Keys, Layers, Reader, Section, Settings, Table, read, written};
 
 use crate::built::MOST_STEPS;
@@ -50,6 +50,10 @@ pub struct Experiment {
     pub cmaes: CmaesConfig,
     /// Settings of augmented random search.
     pub ars: ArsSettings,
+    /// Settings of Bayesian optimisation.
+    pub bo: BoConfig,
+    /// Settings of random search.
+    pub random: RandomConfig,
     /// How long, in which portions.
     pub train: TrainSettings,
     catalogue: Catalogue,
@@ -68,6 +72,7 @@ impl PartialEq for Experiment {
             && self.baseline == other.baseline
             && self.search == other.search
             && (&self.cmaes, &self.ars) == (&other.cmaes, &other.ars)
+            && (&self.bo, &self.random) == (&other.bo, &other.random)
             && self.train == other.train
     }
 }
@@ -108,6 +113,8 @@ impl Experiment {
         table("search", written(&mut self.search.clone()));
         table("cmaes", written(&mut self.cmaes.clone()));
         table("ars", written(&mut self.ars.clone()));
+        table("bo", written(&mut self.bo.clone()));
+        table("random", written(&mut self.random.clone()));
         table("train", written(&mut self.train.clone()));
         toml::to_string(&keys)
     }
@@ -171,8 +178,8 @@ fn read_experiment<'r>(
     let (name, description, seed) = read_top(&mut root);
     let mut section = |name: &str| reader.section(&mut root, name);
     let [task, controller, design, noise] = ["task", "controller", "design", "noise"].map(&mut section);
-    let [mut choice, baseline, search, cmaes, ars, train] =
-        ["learner", "baseline", "search", "cmaes", "ars", "train"].map(&mut section);
+    let [mut choice, baseline, search, cmaes, ars, bo, random, train] =
+        ["learner", "baseline", "search", "cmaes", "ars", "bo", "random", "train"].map(&mut section);
     let mut tables: Vec<(String, Section<'_>)> =
         catalogue.learners().iter().map(|kind| (kind.name().to_owned(), section(kind.name()))).collect();
     root.finish();
@@ -197,6 +204,7 @@ fn read_experiment<'r>(
     let sigma = if method == Method::CmaesRl { 0.25 } else { 0.5 };
     let cmaes = |separable| read_table(CmaesConfig { sigma, separable, ..CmaesConfig::default() }, cmaes);
     let ars = read_table(ArsSettings::new(method == Method::ArsRl), ars);
+    let (bo, random) = (read_table(BoConfig::default(), bo), read_table(RandomConfig::default(), random));
     // The rest cannot be judged without a task.
     let Some(task) = task else {
         cmaes(false);
@@ -233,6 +241,8 @@ fn read_experiment<'r>(
         search,
         cmaes,
         ars,
+        bo,
+        random,
         train,
         catalogue: catalogue.clone(),
     })

@@ -38,6 +38,6 @@ pub use method::Method;
 pub use noise::NoiseSettings;
 pub use placements::PlacedRange;
 pub use reference::{reference, schema};
-pub use search::{MOST_CORRELATED, Score, SearchSettings};
+pub use search::{MOST_CORRELATED, MOST_MODELLED, Score, SearchSettings};
 pub use task::Task;
 pub use train::TrainSettings;

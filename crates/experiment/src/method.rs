@@ -21,17 +21,26 @@ choice! {
         CmaesRl = "cmaes-rl",
         /// Augmented random search over the design; every candidate trains a controller of its own.
         ArsRl = "ars-rl",
+        /// Bayesian optimisation of the design; every candidate trains a controller of its own.
+        BoRl = "bo-rl",
+        /// Random designs; every candidate trains a controller of its own.
+        RandomRl = "random-rl",
     }
 }
 
 impl Method {
     /// Whether it searches without a gradient of the whole.
     pub fn searches(self) -> bool {
-        matches!(self, Self::Cmaes | Self::Ars | Self::CmaesRl | Self::ArsRl)
+        matches!(self, Self::Cmaes | Self::Ars) || self.trains_inside()
     }
 
     /// Whether every candidate of its search trains a controller of its own.
     pub fn trains_inside(self) -> bool {
-        matches!(self, Self::CmaesRl | Self::ArsRl)
+        matches!(self, Self::CmaesRl | Self::ArsRl | Self::BoRl | Self::RandomRl)
+    }
+
+    /// Whether the last generation of its search may be smaller, as the rest of a budget has it.
+    pub fn divides_generations(self) -> bool {
+        matches!(self, Self::BoRl | Self::RandomRl)
     }
 }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use hwasp_algos::{ArsSettings, BaselineSettings, CmaesConfig};
+use hwasp_algos::{ArsSettings, BaselineSettings, BoConfig, CmaesConfig, RandomConfig};
 use hwasp_core::{Dimension, Port};
 use hwasp_settings::{Field, Kind, described, object_schema};
 use serde_json::{Map, Value, json};
@@ -71,6 +71,8 @@ fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     tables.push(("search".to_owned(), described(&mut SearchSettings::new(&train, true))));
     tables.push(("cmaes".to_owned(), described(&mut CmaesConfig::default())));
     tables.push(("ars".to_owned(), described(&mut ArsSettings::new(false))));
+    tables.push(("bo".to_owned(), described(&mut BoConfig::default())));
+    tables.push(("random".to_owned(), described(&mut RandomConfig::default())));
     tables.push(("train".to_owned(), described(&mut TrainSettings::new(1000, true))));
     tables
 }
@@ -81,12 +83,14 @@ fn purpose(table: &str) -> &'static str {
         "design" => "Where each design parameter sits and begins: [hardware.md](hardware.md) says what the places do.",
         "noise" => "The Gaussian noise by which training explores.",
         "learner" => {
-            "What the methods `hwasp`, `minimal`, `episode` and `fixed` train by, and each candidate of `cmaes-rl` and `ars-rl`."
+            "What the methods `hwasp`, `minimal`, `episode` and `fixed` train by, and each candidate of those that end in `-rl`."
         }
         "baseline" => "What estimates values beside the learner.",
-        "search" => "For the methods `cmaes`, `ars`, `cmaes-rl` and `ars-rl`.",
+        "search" => "For the methods `cmaes`, `ars`, `cmaes-rl`, `ars-rl`, `bo-rl` and `random-rl`.",
         "cmaes" => "For the methods `cmaes` and `cmaes-rl`.",
         "ars" => "For the methods `ars` and `ars-rl`.",
+        "bo" => "For the method `bo-rl`.",
+        "random" => "For the method `random-rl`.",
         "train" => "How long, in which portions, and how the result is judged.",
         _ => "",
     }

@@ -7,6 +7,9 @@ use crate::train::TrainSettings;
 /// The most parameters of a full covariance of CMA-ES: its matrices take 1 GB then, and each decomposition seconds.
 pub const MOST_CORRELATED: usize = 5000;
 
+/// The most candidates of a Bayesian search: each costs as much as the cube of those before it.
+pub const MOST_MODELLED: u64 = 1000;
+
 choice! {
     /// What a candidate is scored by.
     pub enum Score {
@@ -53,7 +56,7 @@ impl Settings for SearchSettings {
         let about = "whether candidates act with noise, whose standard deviations are then searched too";
         fields.flag("noise", &mut self.noise, about);
         fields.default("a fortieth of `train.env_steps`").limits("one iteration to 1e12");
-        let about = "steps of a candidate's own training (`cmaes-rl` and `ars-rl`)";
+        let about = "steps of a candidate's own training (methods that end in `-rl`)";
         fields.integer("inner_env_steps", &mut self.inner_env_steps, 1..=1_000_000_000_000, about);
         if let Some((rows, portion)) = self.iteration.take() {
             let (given, sound) = (self.inner_env_steps, fields.sound(&["inner_env_steps"]));

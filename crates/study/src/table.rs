@@ -37,7 +37,7 @@ pub(crate) fn markdown(comparison: &Comparison) -> String {
          over the budget. *Steps to*: median real steps until the mean of the last 11 iterations reached that return. Design\n\
          totals are as built, lowest to highest seed, SI; *error* is their distance from the known optimum. All steps are real\n\
          simulator steps, those of every candidate and every training inside a search included. A method spends its budget in\n\
-         pieces that it takes whole or not at all: episodes, or generations of a search.\n",
+         pieces that it takes whole or not at all: episodes, or generations or candidates of a search.\n",
     );
     text.push_str(&few_seeds(methods));
     let missing: Vec<String> =

@@ -55,7 +55,7 @@ pub const SOFT: Settings = &[
 ];
 
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 17] = [
+pub const KINDS: [(&str, Settings); 19] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -66,6 +66,8 @@ pub const KINDS: [(&str, Settings); 17] = [
     ("cmaes-rl", &[("cmaes.popsize", "5"), ("train.env_steps", "24000")]),
     ("cmaes-rl", &[("cmaes.popsize", "4"), ("train.env_steps", "10000"), ("learner.algorithm", "trpo")]),
     ("ars-rl", &[("ars.directions", "2"), ("train.env_steps", "10000"), ("baseline.kind", MLP)]),
+    ("bo-rl", &[("bo.popsize", "3"), ("bo.initial_points", "2"), ("train.env_steps", "24000")]),
+    ("random-rl", &[("random.popsize", "3"), ("train.env_steps", "10000")]),
     ("hwasp", UNSCALED),
     ("cmaes-rl", UNSCALED),
     ("hwasp", OFF_POLICY),

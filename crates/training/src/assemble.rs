@@ -9,7 +9,7 @@ use hwasp_core::{
     Anneal, HardwarePolicy, Initial, Law, Noise, Placement, PlacementError, Policy, PolicySpec, Purpose, Spread, stream,
 };
 use hwasp_diff::Activation;
-use hwasp_experiment::{ActivationKind, Experiment, MOST_CORRELATED, Method, Place, total_name};
+use hwasp_experiment::{ActivationKind, Experiment, MOST_CORRELATED, MOST_MODELLED, Method, Place, total_name};
 use hwasp_problem::{AnyError, World};
 use thiserror::Error;
 
@@ -41,8 +41,8 @@ pub enum AssembleError {
     Elsewhere(String),
     /// A search whose budget does not hold one generation.
     #[error(
-        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidates of {each} \
-         steps; train for longer, or with fewer candidates or shorter ones"
+        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidate{} of {each} \
+         steps; train for longer, or with fewer candidates or shorter ones", if *.popsize == 1 { "" } else { "s" }
     )]
     Budget {
         /// Steps given.
@@ -62,6 +62,15 @@ pub enum AssembleError {
     Covariance {
         /// Parameters of the policy.
         parameters: usize,
+    },
+    /// More candidates than a model of their scores bears.
+    #[error(
+        "method bo-rl would train {candidates} candidates, and its model bears {MOST_MODELLED}; train each for longer \
+         (search.inner_env_steps), or take cmaes-rl"
+    )]
+    Model {
+        /// Candidates that the budget holds.
+        candidates: u64,
     },
     /// A search over a design that is all fixed, or over none.
     #[error("method {method} searches the design, {}", if *.parameters == 0 {

@@ -15,7 +15,8 @@ use crate::learned::{Clock, Learned, LoopContext};
 use crate::observer::Event;
 use crate::returns::Returns;
 
-/// Searches until the budget does not hold another generation, from the beginning or from where a search was interrupted.
+/// Searches until the budget holds no further generation, or no part of one, from the beginning or from where a search was
+/// interrupted.
 pub(crate) fn search(
     assembly: &Assembly,
     run: &mut LoopContext<'_>,
@@ -33,9 +34,9 @@ pub(crate) fn search(
     })?;
     run.clock = Clock::start(state.learned.wall_s);
     while state.search.stopped().is_none() {
-        let candidates = state.search.ask();
-        let cost = candidates.len() as u64 * assembly.candidate_steps() + assembly.final_steps();
-        if state.learned.env_steps + cost > spec.train.env_steps {
+        let mut candidates = state.search.ask();
+        candidates.truncate(assembly.affordable(candidates.len(), state.learned.env_steps));
+        if candidates.is_empty() {
             break;
         }
         let scored = Generation { space: &space, candidates: &candidates }.score(&mut state, run)?;
@@ -72,11 +73,13 @@ fn tell(
             filter.join(seen);
         }
     }
-    learned.failed_candidates += note_failures(learned, &scored, generation)?;
+    // A last generation may be one candidate alone.
+    let may_fail = space.assembly.experiment().method.divides_generations() && state.best.is_some();
+    learned.failed_candidates += note_failures(learned, &scored, generation, may_fail)?;
     let scores: Vec<f64> = scored.iter().map(|s| space.score(s)).collect();
     state.search.tell(&scores)?;
     let sound: Vec<&Returns> = scored.iter().filter_map(|candidate| candidate.returns.as_ref()).collect();
-    let returns = Returns::mean(&sound);
+    let returns = (!sound.is_empty()).then(|| Returns::mean(&sound));
     for (candidate, score) in scored.into_iter().zip(scores) {
         if state.best.as_ref().is_none_or(|(most, _)| score > *most) {
             state.best = Some((score, candidate.params));
@@ -84,14 +87,15 @@ fn tell(
     }
     let policy = &space.assembly.policy;
     let totals = policy.space().totals(&policy.design(&space.params(&state.search.center())));
-    Ok(learned.record(Some(returns), Vec::new(), totals, run)?)
+    Ok(learned.record(returns, Vec::new(), totals, run)?)
 }
 
-/// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed, it is the error.
-fn note_failures(learned: &mut Learned, scored: &[Scored], generation: u64) -> Result<u64, TrainError> {
+/// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed and they may not, it
+/// is the error.
+fn note_failures(learned: &mut Learned, scored: &[Scored], generation: u64, may_fail: bool) -> Result<u64, TrainError> {
     let failures: Vec<_> = scored.iter().enumerate().filter_map(|(i, s)| Some((i, s.failure()?))).collect();
     let Some((candidate, first)) = failures.first() else { return Ok(0) };
-    if failures.len() == scored.len() {
+    if failures.len() == scored.len() && !may_fail {
         let alike = failures.iter().filter(|(_, failure)| failure.cause == first.cause).count();
         let (candidates, first) = (scored.len(), first.text.clone());
         return Err(TrainError::AllFailed { candidates, generation, alike, first });

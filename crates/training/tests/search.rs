@@ -40,7 +40,7 @@ fn run(assembly: &Assembly, threads: usize) -> (Trained, Vec<String>) {
     (trained.unwrap(), rows.0.iter().map(|row| format!("{row:?}")).collect())
 }
 
-const METHODS: [&str; 4] = ["cmaes", "ars", "cmaes-rl", "ars-rl"];
+const METHODS: [&str; 6] = ["cmaes", "ars", "cmaes-rl", "ars-rl", "bo-rl", "random-rl"];
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
@@ -77,6 +77,11 @@ fn the_ledger_counts_every_step() {
         let settings: &[_] = if method == "ars-rl" { &[("ars.directions", "2")] } else { &[("cmaes.popsize", "5")] };
         assert_eq!(count(method, settings).0, 60_000 / each, "{method}");
     }
+    // The last generation of these takes what is left: 3 · 3 + 2 candidates, or one alone.
+    for (method, popsize) in [("bo-rl", "bo.popsize"), ("random-rl", "random.popsize")] {
+        let count = |budget| count(method, &[("train.env_steps", budget), (popsize, "3"), ("bo.initial_points", "3")]);
+        assert_eq!((count("14000"), count("1300")), ((4, 11 * 1200), (1, 1200)), "{method}");
+    }
 }
 
 #[test]
@@ -89,6 +94,13 @@ fn a_budget_below_one_generation_is_refused() {
         error,
         "method cmaes-rl searches the design, but all of it is fixed; let design.placement be \"action\""
     );
+    let error = assembly("random-rl", &[("train.env_steps", "1300"), ("search.inner_env_steps", "1400")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("1400 steps, for 1 candidate of 1400 steps"), "{error}");
+    let error = assembly("bo-rl", &[("train.env_steps", "1202000")]).err().unwrap().to_string();
+    assert!(error.starts_with("method bo-rl would train 1001 candidates, and its model bears 1000;"), "{error}");
 }
 
 /// All searches find where the point has to be, and what they give is what was evaluated.
@@ -113,11 +125,13 @@ const FASTEST: f64 = 0.3; // m/s
 #[test]
 fn failing_candidates_rank_last_and_are_charged() {
     type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], u64);
-    let settings: [Case<'_>; 4] = [
+    let settings: [Case<'_>; 6] = [
         ("cmaes", &[("cmaes.sigma", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("ars", &[("ars.noise_std", "0.5"), ("search.episodes", "1"), ("search.noise", "false")], 30),
         ("cmaes-rl", &[("cmaes.popsize", "5")], 1200),
         ("ars-rl", &[("ars.directions", "4"), ("ars.noise_std", "0.4"), ("ars.step_size", "0.01")], 1200),
+        ("bo-rl", &[("bo.popsize", "5")], 1200),
+        ("random-rl", &[("random.popsize", "5")], 1200),
     ];
     for (method, settings, each) in settings {
         let mut assembly = assembly(method, settings).unwrap();

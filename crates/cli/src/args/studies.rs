@@ -11,7 +11,7 @@ pub(crate) struct CompareArgs {
     pub(crate) experiment: String,
     /// Methods, separated by commas; fixed:middle, fixed:random, fixed:"2 N/m" and fixed:'{gear = 70, shank = "0.5 m"}' say where
     /// hardware stays that is fixed; parameters that are not named stay where they begin
-    /// [default: hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed; fixed,cmaes,ars where nothing is designed]
+    /// [default: hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,bo-rl,random-rl,fixed; fixed,cmaes,ars where nothing is designed]
     #[arg(long)]
     pub(crate) methods: Vec<String>,
     /// Seeds of each method, one after the other

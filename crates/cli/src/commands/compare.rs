@@ -17,7 +17,7 @@ use crate::grid_progress::GridProgress;
 use crate::output;
 
 /// What is compared where nobody says what.
-const METHODS: &str = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,fixed";
+const METHODS: &str = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,bo-rl,random-rl,fixed";
 /// The same where nothing is designed: the other methods would train the same, or have nothing to search.
 const UNDESIGNED: &str = "fixed,cmaes,ars";
 

@@ -79,6 +79,13 @@ fn composed(spec: &Experiment, method: Method) -> String {
         Method::ArsRl => format!(
             "Augmented random search moves the design; every candidate trains a controller of its own with {learner}."
         ),
+        Method::BoRl => format!(
+            "Bayesian optimisation chooses designs by a model of their scores; every candidate trains a controller of its own with \
+             {learner}."
+        ),
+        Method::RandomRl => {
+            format!("Designs are drawn at random; every candidate trains a controller of its own with {learner}.")
+        }
     }
 }
 

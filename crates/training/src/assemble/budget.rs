@@ -3,7 +3,7 @@
 
 use hwasp_algos::CmaesConfig;
 use hwasp_core::{LaneSteps, Policy};
-use hwasp_experiment::Method;
+use hwasp_experiment::{MOST_MODELLED, Method};
 
 use super::{AssembleError, Assembly};
 
@@ -90,6 +90,9 @@ impl Assembly {
     /// its last choice did not need of the `final_steps`.
     pub fn piece(&self) -> Piece {
         match self.generation() {
+            Some((_, each)) if self.experiment().method.divides_generations() => {
+                Piece { what: "candidate", env_steps: each }
+            }
             Some((popsize, each)) => Piece { what: "generation", env_steps: popsize as u64 * each },
             None if self.experiment().train.steps_per_iteration > 0 => Piece { what: "step", env_steps: 1 },
             None => Piece { what: "episode", env_steps: self.experiment().train.episode_steps as u64 },
@@ -121,12 +124,26 @@ impl Assembly {
             Method::Cmaes | Method::CmaesRl => {
                 CmaesConfig { popsize: spec.cmaes.popsize, ..CmaesConfig::default() }.first_popsize(dimension)
             }
+            Method::BoRl => spec.bo.popsize,
+            Method::RandomRl => spec.random.popsize,
             Method::Hwasp | Method::Minimal | Method::Episode | Method::Fixed => return None,
         };
         Some((popsize, self.candidate_steps()))
     }
 
-    /// Refuses a search whose budget does not hold one generation.
+    /// How many of the candidates of a generation the budget holds after so many steps: all of them or none, or the first ones
+    /// where the method divides its last generation.
+    pub(crate) fn affordable(&self, candidates: usize, env_steps: u64) -> usize {
+        let spec = self.experiment();
+        let left = spec.train.env_steps.saturating_sub(env_steps + self.final_steps());
+        match usize::try_from(left / self.candidate_steps()).unwrap_or(usize::MAX) {
+            most if most >= candidates => candidates,
+            most if spec.method.divides_generations() => most,
+            _ => 0,
+        }
+    }
+
+    /// Refuses a search whose budget does not hold one generation, or more candidates than its model.
     pub(crate) fn check_budget(&self) -> Result<(), AssembleError> {
         let Some((popsize, each)) = self.generation() else { return Ok(()) };
         if self.experiment().method.trains_inside() && self.policy.free_design().is_empty() {
@@ -134,6 +151,10 @@ impl Assembly {
             return Err(AssembleError::NothingToSearch { method, parameters });
         }
         let given = self.experiment().train.env_steps;
+        if self.experiment().method == Method::BoRl && given / each > MOST_MODELLED {
+            return Err(AssembleError::Model { candidates: given / each });
+        }
+        let popsize = if self.experiment().method.divides_generations() { 1 } else { popsize };
         let needed = popsize as u64 * each + self.final_steps();
         if given < needed {
             return Err(AssembleError::Budget { given, needed, popsize, each });

@@ -1,6 +1,6 @@
 //! What is searched: coordinates of candidates, and the policy's parameters that act for them.
 
-use hwasp_algos::{Archive, Ars, ArsConfig, Cmaes, CmaesConfig, Search, SearchError, StateFilter};
+use hwasp_algos::{Archive, Ars, ArsConfig, Bo, Cmaes, CmaesConfig, RandomSearch, Search, SearchError, StateFilter};
 use hwasp_core::Policy;
 use hwasp_experiment::{Method, Score};
 
@@ -39,6 +39,8 @@ impl<'a> SearchSpace<'a> {
                 let config = ArsConfig { lower: limits(0.0), upper: limits(1.0), ..ars.config.clone() };
                 Ok(Box::new(Ars::new(config, start, spec.seed)?))
             }
+            Method::BoRl => Ok(Box::new(Bo::new(spec.bo.clone(), start, spec.seed)?)),
+            Method::RandomRl => Ok(Box::new(RandomSearch::new(spec.random.clone(), start, spec.seed)?)),
             _ => {
                 let config = CmaesConfig { lower: limits(0.0), upper: limits(1.0), ..cmaes.clone() };
                 Ok(Box::new(Cmaes::new(config, &start, spec.seed)?))
@@ -101,9 +103,14 @@ mod tests {
     /// design is the same as at the limit and only chance tells candidates apart.
     #[test]
     fn fractions_of_ranges_stay_in_them() {
-        for (method, far) in [("ars-rl", "ars.noise_std"), ("cmaes-rl", "cmaes.sigma")] {
+        for (method, key, far) in [
+            ("ars-rl", "ars.noise_std", "2"),
+            ("cmaes-rl", "cmaes.sigma", "2"),
+            ("bo-rl", "bo.popsize", "2"),
+            ("random-rl", "random.popsize", "2"),
+        ] {
             let layers = hwasp_testing::layers("mass-spring").with_override("train.env_steps", "1e7");
-            let layers = layers.with_override(far, "2");
+            let layers = layers.with_override(key, far);
             let assembly = Assembly::new(&hwasp_testing::resolve(layers, Some(method)).unwrap()).unwrap();
             let mut search = SearchSpace::new(&assembly).searcher().unwrap();
             let inside = |point: &[f64]| point.len() == 10 && point.iter().all(|x| (0.0..=1.0).contains(x));

@@ -102,8 +102,9 @@ impl Persist for State {
         let mut kinds: Vec<u64> = self.slots.iter().map(Slot::kind).collect();
         with.series("candidates", &mut kinds)?;
         if with.loads() {
-            if !kinds.is_empty() && kinds.len() != self.search.ask().len() {
-                return Err(with.refuse("candidates", kinds.len() as f64, "the size of this generation"));
+            // A last generation may be smaller.
+            if kinds.len() > self.search.ask().len() {
+                return Err(with.refuse("candidates", kinds.len() as f64, "the size of this generation, at most"));
             }
             let wrong = |kind| with.refuse("candidates", kind as f64, "0 (waits), 1 (trains) or 2 (is scored)");
             let seen = self.filter.as_ref().map(StateFilter::blank);

@@ -12,6 +12,8 @@ import shutil
 
 import gymnasium
 
+from designed import LEARNER as DESIGNING
+
 HERE = pathlib.Path(__file__).parent
 ROBOTS = {
     "half_cheetah": "HalfCheetah-v5",
@@ -84,13 +86,25 @@ evaluation_episodes = 100
 """
 
 
+def copy_model(env, folder):
+    """Takes the model of an environment from its package."""
+    model = pathlib.Path(gymnasium.make(env).unwrapped.fullpath)
+    shutil.copy(model, pathlib.Path(folder) / model.name)
+
+
+def write_designed(robot, folder):
+    """Writes the experiment of a robot whose body is designed, with its model; returns its path."""
+    copy_model(DESIGNED[robot], folder)
+    path = pathlib.Path(folder) / f"{robot}.toml"
+    path.write_text((HERE / f"{robot}.toml").read_text() + DESIGNING)
+    return path
+
+
 def write(robot, algorithm, folder, env_steps=1_000_000):
     """Writes the experiment with its model; returns its path."""
     folder = pathlib.Path(folder)
-    env = gymnasium.make(ROBOTS[robot])
-    model = pathlib.Path(env.unwrapped.fullpath)
-    shutil.copy(model, folder / model.name)
     text = (HERE / f"{robot}.toml").read_text()
+    copy_model(ROBOTS[robot], folder)
     text += CONTROLLER + LEARNER[algorithm] + VALUES + train(STEPS[algorithm], EPISODE[robot], env_steps)
     path = folder / f"{robot}-{algorithm}.toml"
     path.write_text(text)

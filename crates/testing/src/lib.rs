@@ -42,8 +42,12 @@ pub const OFF_POLICY: Settings = &[
     ("td3.privileged", "true"),
 ];
 
+/// The last two fifths polish the controller.
+pub const POLISH: Settings =
+    &[("polish.share", "0.4"), ("polish.progress_start", "0.2"), ("ppo.learning_rate_final", "0.1")];
+
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 14] = [
+pub const KINDS: [(&str, Settings); 16] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -58,6 +62,8 @@ pub const KINDS: [(&str, Settings); 14] = [
     ("cmaes-rl", UNSCALED),
     ("hwasp", OFF_POLICY),
     ("minimal", OFF_POLICY),
+    ("hwasp", POLISH),
+    ("cmaes", POLISH),
 ];
 
 /// The problems and learners that come with the program.

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use hwasp_algos::{Archive, PpoKind};
 use hwasp_core::{Batch, End, Episode, Executor, Moments, RolloutError};
 use hwasp_experiment::Catalogue;
-use hwasp_testing::{Keeper, Settings, UNSCALED, catalogue, executor, run, small, told};
+use hwasp_testing::{Keeper, POLISH, Settings, UNSCALED, catalogue, executor, run, small, told};
 use hwasp_training::collect::{
     Answer, CandidateAnswer, CandidateRequest, CollectError, Collector, EpisodeAnswer, EpisodesRequest, ExperimentText,
     Request, Stage, Watch,
@@ -67,8 +67,9 @@ impl Collector for Elsewhere {
 
 #[test]
 fn another_process_gives_the_same_bits() {
-    const KINDS: [(&str, Settings); 5] = [
+    const KINDS: [(&str, Settings); 6] = [
         ("hwasp", &[]),
+        ("hwasp", POLISH),
         ("minimal", UNSCALED),
         ("cmaes", &[("train.env_steps", "20000")]),
         ("ars", &[("ars.variant", "v2-t"), ("ars.directions", "8"), ("train.env_steps", "20000")]),

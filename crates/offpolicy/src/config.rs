@@ -14,6 +14,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `warmup_steps` | 1000 | steps before the first update |
 /// | `updates_per_step` | 1 | gradient steps per step of the simulator |
 /// | `policy_delay` | 2 | gradient steps of the critics for one of the policy |
+/// | `critic_head_start` | 0 | gradient steps of the critics before the first of the policy |
 /// | `learning_rate` | 3e-4 | of the policy, by Adam |
 /// | `critic_learning_rate` | 3e-4 | of the critics |
 /// | `learning_rate_final` | 1 | fraction of both left at the end of a linear decay |
@@ -38,6 +39,9 @@ pub struct ReplayConfig {
     pub updates_per_step: f64,
     /// Gradient steps of the critics for one of the policy (Fujimoto et al. 2018, section 5.2).
     pub policy_delay: usize,
+    /// Gradient steps of the critics before the first of the policy: critics that know nothing yet lead a design away, and a
+    /// trained controller.
+    pub critic_head_start: usize,
     /// Step size of Adam for the policy, at the start.
     pub learning_rate: f64,
     /// The same for the critics.
@@ -64,6 +68,7 @@ impl Default for ReplayConfig {
             warmup_steps: 1000,
             updates_per_step: 1.0,
             policy_delay: 2,
+            critic_head_start: 0,
             learning_rate: 3e-4,
             critic_learning_rate: 3e-4,
             learning_rate_final: 1.0,
@@ -92,6 +97,8 @@ impl Settings for ReplayConfig {
         fields.number("updates_per_step", &mut self.updates_per_step, 1e-3..=100.0, about);
         let about = "gradient steps of the critics for one of the policy";
         fields.count("policy_delay", &mut self.policy_delay, 1..=100, about);
+        let about = "gradient steps of the critics before the first of the policy";
+        fields.count("critic_head_start", &mut self.critic_head_start, 0..=MOST_ROWS, about);
         fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's, for the policy");
         fields.number("critic_learning_rate", &mut self.critic_learning_rate, RATES, "Adam's, for the critics");
         let about = "fraction of both at the end of a linear decay";
@@ -112,6 +119,7 @@ impl Settings for ReplayConfig {
 /// |---|---|---|
 /// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or twice the first noise of an effort |
 /// | `target_noise_clip` | 0.5 | its largest size, in the same unit |
+/// | `target_noise_final` | 1 | fraction of both left at the end of a linear decay |
 #[derive(Clone, Debug, PartialEq)]
 pub struct Td3Config {
     /// What it has in common with others.
@@ -120,11 +128,13 @@ pub struct Td3Config {
     pub target_noise: f64,
     /// c of the same.
     pub target_noise_clip: f64,
+    /// What fraction of both is left at the end: a policy that has to switch sharply is blurred by them.
+    pub target_noise_final: f64,
 }
 
 impl Default for Td3Config {
     fn default() -> Self {
-        Self { replay: ReplayConfig::default(), target_noise: 0.2, target_noise_clip: 0.5 }
+        Self { replay: ReplayConfig::default(), target_noise: 0.2, target_noise_clip: 0.5, target_noise_final: 1.0 }
     }
 }
 
@@ -134,5 +144,7 @@ impl Settings for Td3Config {
         let about = "standard deviation of the noise of target actions, as a share of half the range of a command or of twice the first noise of an effort";
         fields.number("target_noise", &mut self.target_noise, 0.0..=10.0, about);
         fields.number("target_noise_clip", &mut self.target_noise_clip, 0.0..=10.0, "the largest size of that noise");
+        let about = "fraction of both at the end of a linear decay";
+        fields.number("target_noise_final", &mut self.target_noise_final, 0.0..=1.0, about);
     }
 }

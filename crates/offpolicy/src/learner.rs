@@ -9,7 +9,7 @@ use crate::config::Td3Config;
 use crate::critic::{Critics, follow};
 use crate::replay::{Dims, Replay};
 use crate::sample::{Sample, View};
-use crate::scaling::Scaling;
+use crate::scaling::{Affine, Scaling};
 use crate::worker::{Step, Worker};
 
 /// Rows of a gradient step that are a job of their own.
@@ -80,10 +80,12 @@ struct Sums {
     policy_steps: u64,
 }
 
-/// Learning rates of one update.
+/// What schedules say of one update.
 struct Rates {
     policy: Vec<f32>,
     critic: Vec<f32>,
+    /// Times the noise of target actions.
+    smoothing: f32,
 }
 
 impl<P: Policy> Td3<P> {
@@ -123,12 +125,14 @@ impl<P: Policy> Td3<P> {
 
     fn rates(&self, progress: f64) -> Rates {
         let settings = &self.config.replay;
-        let decay = 1.0 + (settings.learning_rate_final - 1.0) * progress;
+        let left = |last: f64| 1.0 + (last - 1.0) * progress;
+        let decay = left(settings.learning_rate_final);
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
         let critic = (settings.critic_learning_rate * decay) as f32;
         Rates {
             policy: group_rates(self.policy.groups(), count, policy, self.design_lr_scale, 0.0),
             critic: vec![critic; self.critic_gradient.len()],
+            smoothing: left(self.config.target_noise_final) as f32,
         }
     }
 
@@ -141,7 +145,8 @@ impl<P: Policy> Td3<P> {
         }
         let scaling = &self.learned.scaling;
         let (noise, clip) = (self.config.target_noise as f32, self.config.target_noise_clip as f32);
-        let smoothing: Vec<_> = scaling.action.iter().map(|a| (noise * a.scale, clip * a.scale)).collect();
+        let size = |a: &Affine| rates.smoothing * a.scale;
+        let smoothing: Vec<_> = scaling.action.iter().map(|a| (noise * size(a), clip * size(a))).collect();
         let mut chance = stream(self.seed, Purpose::Replay, iteration, 0);
         let mut sums = Sums::default();
         while self.learned.owed >= 1.0 {
@@ -173,6 +178,7 @@ impl<P: Policy> Td3<P> {
     ) {
         let settings = &self.config.replay;
         let (rows, tau, delay) = (settings.batch_rows, settings.polyak, settings.policy_delay as u64);
+        let head_start = settings.critic_head_start as u64;
         let value = self.learned.scaling.value;
         self.sample.draw(&self.replay, (settings.n_step, settings.discount), value, chance);
         self.run(executor, smoothing, Worker::judge);
@@ -181,10 +187,12 @@ impl<P: Policy> Td3<P> {
         sums.steps += 1;
         self.learned.updates += 1;
         if self.learned.updates.is_multiple_of(delay) {
-            self.run(executor, smoothing, Worker::improve);
-            self.descend_policy(&rates.policy);
-            sums.values += self.sum(|worker| worker.values) / rows as f64;
-            sums.policy_steps += 1;
+            if self.learned.updates > head_start {
+                self.run(executor, smoothing, Worker::improve);
+                self.descend_policy(&rates.policy);
+                sums.values += self.sum(|worker| worker.values) / rows as f64;
+                sums.policy_steps += 1;
+            }
             let learned = &mut self.learned;
             follow(&mut learned.target, &learned.params, tau);
             for critic in &mut learned.critics.each {

@@ -128,9 +128,10 @@ impl<P: Policy> Td3<P> {
         let left = |last: f64| 1.0 + (last - 1.0) * progress;
         let decay = left(settings.learning_rate_final);
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
+        let design = if progress < settings.design_start { 0.0 } else { self.design_lr_scale };
         let critic = (settings.critic_learning_rate * decay) as f32;
         Rates {
-            policy: group_rates(self.policy.groups(), count, policy, self.design_lr_scale, 0.0),
+            policy: group_rates(self.policy.groups(), count, policy, design, 0.0),
             critic: vec![critic; self.critic_gradient.len()],
             smoothing: left(self.config.target_noise_final) as f32,
         }
@@ -178,7 +179,6 @@ impl<P: Policy> Td3<P> {
     ) {
         let settings = &self.config.replay;
         let (rows, tau, delay) = (settings.batch_rows, settings.polyak, settings.policy_delay as u64);
-        let head_start = settings.critic_head_start as u64;
         let value = self.learned.scaling.value;
         self.sample.draw(&self.replay, (settings.n_step, settings.discount), value, chance);
         self.run(executor, smoothing, Worker::judge);
@@ -187,12 +187,10 @@ impl<P: Policy> Td3<P> {
         sums.steps += 1;
         self.learned.updates += 1;
         if self.learned.updates.is_multiple_of(delay) {
-            if self.learned.updates > head_start {
-                self.run(executor, smoothing, Worker::improve);
-                self.descend_policy(&rates.policy);
-                sums.values += self.sum(|worker| worker.values) / rows as f64;
-                sums.policy_steps += 1;
-            }
+            self.run(executor, smoothing, Worker::improve);
+            self.descend_policy(&rates.policy);
+            sums.values += self.sum(|worker| worker.values) / rows as f64;
+            sums.policy_steps += 1;
             let learned = &mut self.learned;
             follow(&mut learned.target, &learned.params, tau);
             for critic in &mut learned.critics.each {

@@ -162,13 +162,8 @@ impl View {
             to[..obs].copy_from_slice(&moments.obs[r * obs..][..obs]);
             let mut at = obs;
             if self.state {
-                let to = &mut to[at..at + self.dims.state];
-                to.fill(0.0);
-                for (j, affine) in scaling.state.iter().enumerate() {
-                    let scaled = affine.apply(moments.state[j * sample.count + r]);
-                    for (to, mix) in to.iter_mut().zip(scaling.mix.chunks_exact(self.dims.state)).skip(j) {
-                        *to += mix[j] * scaled;
-                    }
+                for (s, affine) in scaling.state.iter().enumerate() {
+                    to[at + s] = affine.apply(moments.state[s * sample.count + r]);
                 }
                 at += self.dims.state;
             }

@@ -25,10 +25,6 @@ impl Affine {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scaling {
     pub(crate) state: Vec<Affine>,
-    /// What critics see of the scaled state is this lower triangle times it, `[state × state]` row by row: of each number what those
-    /// before it do not tell. An effort goes with the gap between two bodies, and a critic that sees the gap as a small difference of
-    /// large positions takes the one for the other.
-    pub(crate) mix: Vec<f32>,
     pub(crate) context: Vec<Affine>,
     /// Commands and designs by their limits, efforts by twice the spread of their noise: a critic has to tell what the noise does
     /// from what the command does.
@@ -45,7 +41,6 @@ impl Scaling {
         let one = Affine { center: 0.0, scale: 1.0 };
         Self {
             state: vec![one; dims.state],
-            mix: identity(dims.state),
             context: vec![one; dims.context],
             action: vec![one; dims.action],
             value: (0.0, 1.0),
@@ -64,15 +59,10 @@ impl Scaling {
             let std = square.sqrt() as f32;
             Affine { center: mean as f32, scale: if std > 1e-6 { std } else { 1.0 } }
         };
-        let state: Vec<Affine> = (0..dims.state).map(|s| each(&|i| replay.state(i)[s])).collect();
-        let scaled =
-            frames.clone().map(|i| state.iter().zip(replay.state(i)).map(|(a, &x)| f64::from(a.apply(x))).collect());
-        let mix = whitening(dims.state, &scaled.collect::<Vec<_>>());
         let (limits, mut log_std) = (policy.action_limits(), vec![0.0; dims.action]);
         policy.log_std(params, 0.0, &mut log_std);
         Self {
-            state,
-            mix,
+            state: (0..dims.state).map(|s| each(&|i| replay.state(i)[s])).collect(),
             context: (0..dims.context).map(|c| each(&|i| replay.context(i)[c])).collect(),
             action: (0..dims.action)
                 .map(|a| match limits[a] {
@@ -84,37 +74,6 @@ impl Scaling {
             taken: true,
         }
     }
-}
-
-/// The least deviation that a number is taken to have beside those before it: less would be blown up, and what is later there
-/// may vary more.
-const LEAST_RESIDUAL: f64 = 0.2;
-
-fn identity(size: usize) -> Vec<f32> {
-    let mut matrix = vec![0.0; size * size];
-    matrix.iter_mut().step_by(size + 1).for_each(|x| *x = 1.0);
-    matrix
-}
-
-/// L⁻¹ of the correlations L·Lᵀ between the numbers of each row (Cholesky).
-fn whitening(size: usize, rows: &[Vec<f64>]) -> Vec<f32> {
-    let (mut lower, mut inverse) = (vec![0.0; size * size], vec![0.0; size * size]);
-    for i in 0..size {
-        for j in 0..=i {
-            let product = rows.iter().map(|row| row[i] * row[j]).sum::<f64>() / rows.len().max(1) as f64;
-            let told: f64 = (0..j).map(|k| lower[i * size + k] * lower[j * size + k]).sum();
-            let left = product - told;
-            lower[i * size + j] =
-                if i == j { left.max(LEAST_RESIDUAL.powi(2)).sqrt() } else { left / lower[j * size + j] };
-        }
-        let own = lower[i * size + i];
-        for j in 0..i {
-            let told: f64 = (j..i).map(|k| lower[i * size + k] * inverse[k * size + j]).sum();
-            inverse[i * size + j] = -told / own;
-        }
-        inverse[i * size + i] = 1.0 / own;
-    }
-    inverse.into_iter().map(|x| x as f32).collect()
 }
 
 /// Mean and spread of the returns of all steps. What follows a cut episode counts as the mean itself:
@@ -136,7 +95,6 @@ impl Persist for Scaling {
         self.taken = taken != 0;
         with.number("value_center", &mut self.value.0)?;
         with.number("value_scale", &mut self.value.1)?;
-        with.vector("mix", &mut self.mix)?;
         for (name, all) in [("state", &mut self.state), ("context", &mut self.context), ("action", &mut self.action)] {
             let mut pairs: Vec<f32> = all.iter().flat_map(|affine| [affine.center, affine.scale]).collect();
             with.vector(name, &mut pairs)?;
@@ -145,30 +103,5 @@ impl Persist for Scaling {
             }
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// y = x + d with x = ±1 and d = ±0.5 by themselves: in units of their deviations the correlation is 1/√1.25, and what is left of
-    /// y beside x is d.
-    #[test]
-    fn what_is_left_of_a_number_is_what_those_before_it_do_not_tell() {
-        let y = |x: f64, d: f64| (x + d) / 1.25_f64.sqrt();
-        let signs = [(1.0, 0.5), (1.0, -0.5), (-1.0, 0.5), (-1.0, -0.5)];
-        let rows: Vec<Vec<f64>> = signs.iter().map(|&(x, d)| vec![x, y(x, d)]).collect();
-        let mix = whitening(2, &rows);
-        assert_eq!((mix[0], mix[1]), (1.0, 0.0));
-        for (row, (_, d)) in rows.iter().zip(signs) {
-            let seen = f64::from(mix[2]) * row[0] + f64::from(mix[3]) * row[1];
-            assert!((seen - d / 0.5).abs() < 1e-6, "{seen} of {d}");
-        }
-        // What hardly differs is not blown up: a copy is seen as nothing.
-        let copies: Vec<Vec<f64>> = [1.0, -1.0].map(|x| vec![x, x]).to_vec();
-        let mix = whitening(2, &copies);
-        assert_eq!(mix[2..], [-5.0, 5.0]);
-        assert_eq!(whitening(2, &[]), [5.0, 0.0, 0.0, 5.0]);
     }
 }

@@ -59,6 +59,13 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         summary.wall_s,
         grouped(summary.steps_per_s as u64)
     );
+    if let Some(steps) = summary.polish_steps {
+        let _ = writeln!(
+            text,
+            "  the last {} of these steps polished the controller on the design as built\n",
+            grouped(steps)
+        );
+    }
     if let Some(failed) = summary.failed_candidates.filter(|&failed| failed > 0) {
         let _ = writeln!(text, "  {} candidates failed and ranked last", grouped(failed));
         if let Some(first) = &summary.first_failure {

@@ -142,8 +142,20 @@ impl Catalogue {
 }
 
 /// Tables of an experiment that are not a learner's.
-pub(crate) const SECTIONS: [&str; 11] =
-    ["task", "controller", "design", "noise", "learner", "baseline", "search", "cmaes", "ars", "train", "methods"];
+pub(crate) const SECTIONS: [&str; 12] = [
+    "task",
+    "controller",
+    "design",
+    "noise",
+    "learner",
+    "baseline",
+    "search",
+    "cmaes",
+    "ars",
+    "train",
+    "polish",
+    "methods",
+];
 
 fn check_name(what: &'static str, name: &str, taken: bool) -> Result<(), CatalogueError> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';

@@ -12,6 +12,7 @@ use crate::design::DesignSettings;
 use crate::learner::LearnerSettings;
 use crate::method::Method;
 use crate::noise::NoiseSettings;
+use crate::polish::PolishSettings;
 use crate::search::{MOST_CORRELATED, SearchSettings};
 use crate::task::Task;
 use crate::train::TrainSettings;
@@ -56,6 +57,8 @@ pub struct Experiment {
     pub random: RandomConfig,
     /// How long, in which portions.
     pub train: TrainSettings,
+    /// How its last part polishes the controller.
+    pub polish: PolishSettings,
     catalogue: Catalogue,
 }
 
@@ -73,7 +76,7 @@ impl PartialEq for Experiment {
             && self.search == other.search
             && (&self.cmaes, &self.ars) == (&other.cmaes, &other.ars)
             && (&self.bo, &self.random) == (&other.bo, &other.random)
-            && self.train == other.train
+            && (&self.train, &self.polish) == (&other.train, &other.polish)
     }
 }
 
@@ -116,6 +119,10 @@ impl Experiment {
         table("bo", written(&mut self.bo.clone()));
         table("random", written(&mut self.random.clone()));
         table("train", written(&mut self.train.clone()));
+        // Checkpoints of earlier versions are of experiments without it.
+        if self.polish != PolishSettings::default() {
+            table("polish", written(&mut self.polish.clone()));
+        }
         toml::to_string(&keys)
     }
 }
@@ -178,8 +185,8 @@ fn read_experiment<'r>(
     let (name, description, seed) = read_top(&mut root);
     let mut section = |name: &str| reader.section(&mut root, name);
     let [task, controller, design, noise] = ["task", "controller", "design", "noise"].map(&mut section);
-    let [mut choice, baseline, search, cmaes, ars, bo, random, train] =
-        ["learner", "baseline", "search", "cmaes", "ars", "bo", "random", "train"].map(&mut section);
+    let [mut choice, baseline, search, cmaes, ars, bo, random, train, polish] =
+        ["learner", "baseline", "search", "cmaes", "ars", "bo", "random", "train", "polish"].map(&mut section);
     let mut tables: Vec<(String, Section<'_>)> =
         catalogue.learners().iter().map(|kind| (kind.name().to_owned(), section(kind.name()))).collect();
     root.finish();
@@ -187,6 +194,7 @@ fn read_experiment<'r>(
     let task = Task::read(task, catalogue);
     let horizon = task.as_ref().map_or(MOST_STEPS, |task| task.horizon);
     let train = read_table(TrainSettings::new(horizon, reader.sound(&["task.horizon"])), train);
+    let length = reader.sound(&["train.env_steps"]);
     let sound = reader.sound(&[
         "train.episodes_per_iteration",
         "train.steps_per_iteration",
@@ -209,6 +217,7 @@ fn read_experiment<'r>(
     let Some(task) = task else {
         cmaes(false);
         choice.finish();
+        read_table(PolishSettings::default(), polish);
         return None;
     };
     let searched_by = (method.searches() && !method.trains_inside()).then(|| method.name());
@@ -227,6 +236,8 @@ fn read_experiment<'r>(
     let cmaes = cmaes(method == Method::Cmaes && most_parameters(&controller, &task) > MOST_CORRELATED);
     let design = read_table(DesignSettings::new(method, task.groups()), design);
     let noise = read_table(NoiseSettings::new(&task, &design), noise);
+    let polish_of = if sound && length { PolishSettings::new(&train, &task) } else { PolishSettings::default() };
+    let polish = read_table(polish_of, polish);
     Some(Experiment {
         name,
         description,
@@ -244,6 +255,7 @@ fn read_experiment<'r>(
         bo,
         random,
         train,
+        polish,
         catalogue: catalogue.clone(),
     })
 }

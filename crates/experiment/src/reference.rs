@@ -16,6 +16,7 @@ use crate::experiment::{LONGEST_DESCRIPTION, LONGEST_NAME};
 use crate::learner::LearnerSettings;
 use crate::method::Method;
 use crate::noise::NoiseSettings;
+use crate::polish::PolishSettings;
 use crate::search::SearchSettings;
 use crate::train::TrainSettings;
 
@@ -74,6 +75,7 @@ fn tables(catalogue: &Catalogue) -> Vec<(String, Vec<Field>)> {
     tables.push(("bo".to_owned(), described(&mut BoConfig::default())));
     tables.push(("random".to_owned(), described(&mut RandomConfig::default())));
     tables.push(("train".to_owned(), described(&mut TrainSettings::new(1000, true))));
+    tables.push(("polish".to_owned(), described(&mut PolishSettings::default())));
     tables
 }
 
@@ -92,6 +94,10 @@ fn purpose(table: &str) -> &'static str {
         "bo" => "For the method `bo-rl`.",
         "random" => "For the method `random-rl`.",
         "train" => "How long, in which portions, and how the result is judged.",
+        "polish" => {
+            "For every method: the last part of a training fixes the design and trains the controller further in the world where the \
+             result has to work. It begins with the trained controller and a fresh learner of the same settings."
+        }
         _ => "",
     }
 }

@@ -27,6 +27,8 @@ pub struct TrainSettings {
     pub evaluation_seed: u64,
     /// What the authors' plots count per iteration; 0 for the real steps.
     pub nominal_steps: u64,
+    /// Steps that came before, where these are the settings of a later part of a training.
+    before: u64,
     /// Steps of an episode of the task.
     horizon: usize,
     /// Whether the horizon is known to be right.
@@ -46,6 +48,7 @@ impl TrainSettings {
             evaluation_episodes: 1000,
             evaluation_seed: 1_000_003,
             nominal_steps: 0,
+            before: 0,
             horizon,
             horizon_sound,
         }
@@ -77,7 +80,14 @@ impl TrainSettings {
 
     /// The share of all schedules that is done after so many steps.
     pub fn progress(&self, env_steps: u64) -> f64 {
-        self.progress_start + (1.0 - self.progress_start) * (env_steps as f64 / self.env_steps as f64)
+        let [done, all] = [env_steps, self.env_steps].map(|steps| steps.saturating_sub(self.before) as f64);
+        self.progress_start + (1.0 - self.progress_start) * (done / all)
+    }
+
+    /// The settings of what follows after so many steps, where the schedules go from `progress_start` to their end once more.
+    #[must_use]
+    pub fn after(&self, env_steps: u64, progress_start: f64) -> Self {
+        Self { before: env_steps, progress_start, ..self.clone() }
     }
 }
 

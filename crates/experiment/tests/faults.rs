@@ -62,6 +62,10 @@ wrong_files! {
     statistics_of_a_search: "method = \"ars\"\n[controller]\nnormalize_observations = true\n[methods.cmaes-rl.controller]\nnormalize_observations = true\n";
     experience_measured_anew: "[learner]\nalgorithm = \"td3\"\n[controller]\nnormalize_observations = true\n[train]\nreward_scaling = true\n";
     replays_that_hold_too_little: "[learner]\nalgorithm = 'td3'\n[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
+    polish_out_of_range: "[polish]\nshare = 0.95\nworld = \"real\"\nprogress_start = -1\n";
+    polish_of_less_than_an_iteration: "[train]\nenv_steps = 40000\n[polish]\nshare = 0.09\n";
+    polish_that_leaves_too_little: "[train]\nenv_steps = 8000\n[polish]\nshare = 0.6\n";
+    polish_in_a_world_that_is_not_there: "[polish]\nshare = 0.2\nworld = \"native\"\n";
     fewer_steps_than_lanes: "[train]\nsteps_per_iteration = 3\nepisodes_per_iteration = 4\n[ppo]\nminibatch_rows = 30\n";
     unknown_method: "[methods.hwsap.ppo]\nepochs = 3\n";
     fault_in_the_tables_of_another_method: "[methods.minimal.ppo]\nepohcs = 3\nclip_ratio = 7\n[methods]\nfixed = 1\n";

@@ -14,6 +14,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `warmup_steps` | 1000 | steps before the first update |
 /// | `updates_per_step` | 1 | gradient steps per step of the simulator |
 /// | `policy_delay` | 2 for TD3, 1 for SAC | gradient steps of the critics for one of the policy |
+/// | `design_start` | 0 | share of the schedules that is done before the design moves |
 /// | `learning_rate` | 3e-4 | of the policy, by Adam |
 /// | `critic_learning_rate` | 3e-4 | of the critics |
 /// | `learning_rate_final` | 1 | fraction of both left at the end of a linear decay |
@@ -38,6 +39,9 @@ pub struct ReplayConfig {
     pub updates_per_step: f64,
     /// Gradient steps of the critics for one of the policy (Fujimoto et al. 2018, section 5.2).
     pub policy_delay: usize,
+    /// The share of the schedules that is done before the design moves: a controller that knows nothing yet makes other designs
+    /// look good than one that can use them.
+    pub design_start: f64,
     /// Step size of Adam for the policy, at the start.
     pub learning_rate: f64,
     /// The same for the critics.
@@ -64,6 +68,7 @@ impl Default for ReplayConfig {
             warmup_steps: 1000,
             updates_per_step: 1.0,
             policy_delay: 1,
+            design_start: 0.0,
             learning_rate: 3e-4,
             critic_learning_rate: 3e-4,
             learning_rate_final: 1.0,
@@ -92,6 +97,8 @@ impl Settings for ReplayConfig {
         fields.number("updates_per_step", &mut self.updates_per_step, 1e-3..=100.0, about);
         let about = "gradient steps of the critics for one of the policy";
         fields.count("policy_delay", &mut self.policy_delay, 1..=100, about);
+        let about = "share of the schedules that is done before the design moves";
+        fields.number("design_start", &mut self.design_start, 0.0..=1.0, about);
         fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's, for the policy");
         fields.number("critic_learning_rate", &mut self.critic_learning_rate, RATES, "Adam's, for the critics");
         let about = "fraction of both at the end of a linear decay";

@@ -83,12 +83,14 @@ struct Sums {
     policy_steps: u64,
 }
 
-/// Learning rates of one update.
+/// What schedules say of one update.
 struct Rates {
     policy: Vec<f32>,
     critic: Vec<f32>,
     /// What is left of rates at the start.
     decay: f64,
+    /// The share of all schedules that is done.
+    progress: f64,
 }
 
 #[allow(private_bounds)]
@@ -106,7 +108,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let worker = |at| Mutex::new(Worker::new::<R>(part(at), &*policy, &critics, view));
         Self {
             workers: (0..rows).step_by(ROWS_PER_JOB).map(worker).collect(),
-            sample: Sample::new(dims, rows, R::drawn(&policy), rule.smoothing(&scaling).len()),
+            sample: Sample::new(dims, rows, R::drawn(&policy), rule.smoothing(&scaling, 0.0).len()),
             gradient: vec![0.0; params.len()],
             critic_gradient: vec![0.0; critics.network.param_count()],
             replay: Replay::new(dims, settings.replay_frames),
@@ -136,11 +138,13 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let settings = self.settings();
         let decay = 1.0 + (settings.learning_rate_final - 1.0) * progress;
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
+        let design = if progress < settings.design_start { 0.0 } else { self.design_lr_scale };
         let critic = (settings.critic_learning_rate * decay) as f32;
         Rates {
-            policy: group_rates(self.policy.groups(), count, policy, self.design_lr_scale, 0.0),
+            policy: group_rates(self.policy.groups(), count, policy, design, 0.0),
             critic: vec![critic; self.critic_gradient.len()],
             decay,
+            progress,
         }
     }
 
@@ -151,7 +155,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         if !self.learned.scaling.taken {
             self.learned.scaling = Scaling::of(&self.replay, (&*self.policy, &self.learned.params), discount);
         }
-        let smoothing = self.learned.rule.smoothing(&self.learned.scaling);
+        let smoothing = self.learned.rule.smoothing(&self.learned.scaling, rates.progress);
         let mut chance = stream(self.seed, Purpose::Replay, iteration, 0);
         let mut sums = Sums::default();
         while self.learned.owed >= 1.0 {

@@ -22,8 +22,9 @@ pub(crate) trait Rule<P: Policy>: Persist + Clone + Send + Sync {
     /// Standard normal numbers that the actions of one row take.
     fn drawn(policy: &P) -> usize;
 
-    /// Spread and largest size of what is added to the actions at the next moments, for each component; nothing is where it is empty.
-    fn smoothing(&self, scaling: &Scaling) -> Vec<(f32, f32)>;
+    /// Spread and largest size of what is added to the actions at the next moments, for each component, at `progress` of the
+    /// training; nothing is where it is empty.
+    fn smoothing(&self, scaling: &Scaling, progress: f64) -> Vec<(f32, f32)>;
 
     /// The policy's actions in a block `[A × tape rows]` and their log-probabilities, where entropy counts.
     fn act<'t>(policy: &P, rows: &Rows<'_>, noise: &[f32], tape: &'t mut P::Tape) -> (&'t [f32], Option<&'t [f32]>);

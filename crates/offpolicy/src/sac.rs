@@ -103,7 +103,7 @@ impl<P: Reparameterised> Rule<P> for SacRule {
         policy.drawn_commands()
     }
 
-    fn smoothing(&self, _: &Scaling) -> Vec<(f32, f32)> {
+    fn smoothing(&self, _: &Scaling, _: f64) -> Vec<(f32, f32)> {
         Vec::new()
     }
 

@@ -7,7 +7,7 @@ use hwasp_settings::{Fields, Settings};
 use crate::config::ReplayConfig;
 use crate::learner::OffPolicy;
 use crate::rule::Rule;
-use crate::scaling::Scaling;
+use crate::scaling::{Affine, Scaling};
 
 /// Twin delayed deep deterministic policy gradients (Fujimoto et al. 2018): what critics judge is the policy's mean, explored by
 /// noise that is added to it.
@@ -19,6 +19,7 @@ pub type Td3<P> = OffPolicy<P, Td3Config>;
 /// |---|---|---|
 /// | `target_noise` | 0.2 | standard deviation of the noise of target actions, times half the range of a command, or twice the first noise of an effort |
 /// | `target_noise_clip` | 0.5 | its largest size, in the same unit |
+/// | `target_noise_final` | 1 | fraction of both left at the end of a linear decay |
 #[derive(Clone, Debug, PartialEq)]
 pub struct Td3Config {
     /// What it has in common with others.
@@ -27,6 +28,8 @@ pub struct Td3Config {
     pub target_noise: f64,
     /// c of the same.
     pub target_noise_clip: f64,
+    /// What fraction of both is left at the end: a policy that has to switch sharply is blurred by them.
+    pub target_noise_final: f64,
 }
 
 impl Default for Td3Config {
@@ -35,6 +38,7 @@ impl Default for Td3Config {
             replay: ReplayConfig { policy_delay: 2, ..ReplayConfig::default() },
             target_noise: 0.2,
             target_noise_clip: 0.5,
+            target_noise_final: 1.0,
         }
     }
 }
@@ -45,6 +49,8 @@ impl Settings for Td3Config {
         let about = "standard deviation of the noise of target actions, as a share of half the range of a command or of twice the first noise of an effort";
         fields.number("target_noise", &mut self.target_noise, 0.0..=10.0, about);
         fields.number("target_noise_clip", &mut self.target_noise_clip, 0.0..=10.0, "the largest size of that noise");
+        let about = "fraction of both at the end of a linear decay";
+        fields.number("target_noise_final", &mut self.target_noise_final, 0.0..=1.0, about);
     }
 }
 
@@ -68,9 +74,11 @@ impl<P: Policy> Rule<P> for Td3Config {
         0
     }
 
-    fn smoothing(&self, scaling: &Scaling) -> Vec<(f32, f32)> {
+    fn smoothing(&self, scaling: &Scaling, progress: f64) -> Vec<(f32, f32)> {
         let (noise, clip) = (self.target_noise as f32, self.target_noise_clip as f32);
-        scaling.action.iter().map(|a| (noise * a.scale, clip * a.scale)).collect()
+        let left = (1.0 + (self.target_noise_final - 1.0) * progress) as f32;
+        let size = |a: &Affine| left * a.scale;
+        scaling.action.iter().map(|a| (noise * size(a), clip * size(a))).collect()
     }
 
     fn act<'t>(policy: &P, rows: &Rows<'_>, _: &[f32], tape: &'t mut P::Tape) -> (&'t [f32], Option<&'t [f32]>) {

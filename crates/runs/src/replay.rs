@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hwasp_algos::Metrics;
 use hwasp_core::Executor;
 use hwasp_experiment::{Catalogue, EXPERIMENT};
-use hwasp_training::{Checkpoint, TrainError, repeat};
+use hwasp_training::{Checkpoint, TrainError, repeat, stage_at};
 use thiserror::Error;
 
 use crate::checkpoint::{Header, LARGEST_CHECKPOINT, decode, experiment_hash, has_batch, has_this_batch};
@@ -31,9 +31,9 @@ pub enum ReplayError {
         /// The file.
         path: PathBuf,
     },
-    /// The end of a training.
+    /// The end of a training, or of its main stage.
     #[error(
-        "{path} is of the end of its training: no iteration follows; name an earlier checkpoint of the run, or one of `faults`"
+        "{path} is of the end of its training, or of the stage before its polish: no iteration follows; name an earlier checkpoint of the run, or one of `faults`"
     )]
     End {
         /// The file.
@@ -74,15 +74,16 @@ pub fn replay(path: &Path, catalogue: &Catalogue, executor: &dyn Executor) -> Re
     let experiment = assembly.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
     let checkpoint = decode(&bytes, &experiment_hash(&experiment)).map_err(checkpoint_error)?;
     let fault = Header::read(&bytes).map_err(checkpoint_error)?.fault;
-    if assembly.experiment().method.searches() {
+    let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };
+    let stage = stage_at(assembly, &checkpoint).map_err(state_error)?;
+    if stage.experiment().method.searches() {
         return Err(ReplayError::Search { path: path.to_owned() });
     }
-    if !assembly.iterates(checkpoint.env_steps) {
+    if !stage.iterates(checkpoint.env_steps) {
         return Err(ReplayError::End { path: path.to_owned() });
     }
-    let state_error = |source: TrainError| RunError::State { path: path.to_owned(), source: Box::new(source) };
     let archive = &checkpoint.archive;
-    let (batch, outcome) = repeat(assembly, archive, executor).map_err(state_error)?;
+    let (batch, outcome) = repeat(&stage, archive, executor).map_err(state_error)?;
     let same_batch = batch.filter(|_| has_batch(archive)).map(|batch| has_this_batch(archive, &batch));
     let Checkpoint { iteration, env_steps, .. } = checkpoint;
     Ok(Replay { iteration, env_steps, fault, same_batch, outcome })

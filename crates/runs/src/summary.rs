@@ -66,6 +66,9 @@ pub struct Summary {
     /// Episodes whose physics failed.
     #[serde(default)]
     pub discarded_episodes: u64,
+    /// Steps that polished the controller, of those of training; none where the experiment asks for no polish.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub polish_steps: Option<u64>,
     /// The deterministic policy on held-out starts, on the hardware as built.
     pub evaluation: Evaluation,
     /// The design.
@@ -91,6 +94,7 @@ impl Summary {
             failed_candidates: trained.failed_candidates,
             first_failure: trained.first_failure.clone(),
             discarded_episodes: trained.discarded_episodes,
+            polish_steps: trained.polish_steps,
             evaluation: trained.evaluation.clone(),
             design: design_summary(assembly, &trained.params),
         }

@@ -54,8 +54,12 @@ pub const SOFT: Settings = &[
     ("sac.context", "true"),
 ];
 
+/// The last two fifths polish the controller.
+pub const POLISH: Settings =
+    &[("polish.share", "0.4"), ("polish.progress_start", "0.2"), ("ppo.learning_rate_final", "0.1")];
+
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 19] = [
+pub const KINDS: [(&str, Settings); 21] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -75,6 +79,8 @@ pub const KINDS: [(&str, Settings); 19] = [
     ("hwasp", SOFT),
     ("episode", SOFT),
     ("fixed", SOFT),
+    ("hwasp", POLISH),
+    ("cmaes", POLISH),
 ];
 
 /// The problems and learners that come with the program.

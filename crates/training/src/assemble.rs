@@ -1,6 +1,7 @@
 //! From a checked experiment to things that run: one match per axis (problem, placement, learner), none per combination.
 
 mod budget;
+mod polish;
 
 use std::sync::Arc;
 
@@ -15,6 +16,8 @@ use thiserror::Error;
 
 pub use self::budget::Piece;
 pub(crate) use self::budget::{FINAL_EPISODES, Portion};
+pub(crate) use self::polish::MainStage;
+use self::polish::Polish;
 
 /// Why a checked experiment cannot be put together.
 #[derive(Debug, Error)]
@@ -41,12 +44,16 @@ pub enum AssembleError {
     Elsewhere(String),
     /// A search whose budget does not hold one generation.
     #[error(
-        "train.env_steps = {given} is less than one generation takes: {needed} steps, for {popsize} candidate{} of {each} \
-         steps; train for longer, or with fewer candidates or shorter ones", if *.popsize == 1 { "" } else { "s" }
+        "train.env_steps = {given}{} is less than one generation takes: {needed} steps, for {popsize} candidate{} of {each} \
+         steps; train for longer, or with fewer candidates or shorter ones",
+        if *.polish == 0 { String::new() } else { format!(", less {} to polish,", .polish) },
+        if *.popsize == 1 { "" } else { "s" }
     )]
     Budget {
         /// Steps given.
         given: u64,
+        /// Those of them that polish.
+        polish: u64,
         /// Steps needed.
         needed: u64,
         /// Candidates of a generation.
@@ -123,6 +130,8 @@ pub struct Assembly {
     /// Controller and hardware composed.
     pub policy: Arc<HardwarePolicy>,
     experiment: Experiment,
+    /// Of the training that polishes what another one came to.
+    polish: Option<Arc<Polish>>,
 }
 
 impl Assembly {
@@ -130,7 +139,7 @@ impl Assembly {
     pub fn new(experiment: &Experiment) -> Result<Self, AssembleError> {
         let worlds = Worlds::new(experiment)?;
         let policy = HardwarePolicy::new(policy_spec(experiment, &worlds.training.law), &worlds.training.env)?;
-        let assembly = Self { worlds, policy: Arc::new(policy), experiment: experiment.clone() };
+        let assembly = Self { worlds, policy: Arc::new(policy), experiment: experiment.clone(), polish: None };
         let parameters = assembly.policy.param_count();
         if experiment.method == Method::Cmaes && !experiment.cmaes.separable && parameters > MOST_CORRELATED {
             return Err(AssembleError::Covariance { parameters });
@@ -164,9 +173,15 @@ impl Assembly {
         groups.map(|g| total_name(&g.name, g.count)).collect()
     }
 
-    /// Fresh parameters.
+    /// Fresh parameters; those of the main stage where it polishes.
     pub fn init(&self) -> Vec<f32> {
-        self.policy.init(self.experiment.seed, self.experiment.controller.output_gain)
+        let fresh = || self.policy.init(self.experiment.seed, self.experiment.controller.output_gain);
+        self.polish.as_ref().map_or_else(fresh, |polish| polish.start.clone())
+    }
+
+    /// The names of what its learner tells of an update.
+    pub(crate) fn metric_names(&self) -> &'static [&'static str] {
+        self.learner(self.init()).metric_names()
     }
 
     /// A learner that starts from `params`.
@@ -247,9 +262,9 @@ fn policy_spec(spec: &Experiment, law: &Law) -> PolicySpec {
             ActivationKind::Relu => Activation::Relu,
         },
         squash: spec.controller.squash,
-        // A search of all parameters has no use for the spread of one learner.
+        // A search of all parameters has no use for it, but a learner that polishes what it found has.
         state_dependent_std: spec.learner.state_dependent_std()
-            && (!spec.method.searches() || spec.method.trains_inside()),
+            && (!spec.method.searches() || spec.method.trains_inside() || spec.polish.share > 0.0),
         observation_center: spec.controller.observation_center.clone(),
         observation_scale: spec.controller.observation_scale.clone(),
         sees_design: spec.controller.sees_design,

@@ -157,6 +157,8 @@ pub enum Stage {
     Deployment(#[serde(with = "bits")] Vec<f64>),
     /// The world that stands in for the robot built to this design, SI; the controller.
     StandIn(#[serde(with = "bits")] Vec<f64>),
+    /// The world where the experiment polishes, with hardware of this design, SI; the policy as it learns there.
+    Polish(#[serde(with = "bits")] Vec<f64>),
 }
 
 /// What an episode came to; the error where its physics failed.
@@ -169,7 +171,7 @@ pub struct EpisodesRequest {
     pub experiment: ExperimentText,
     /// Where they run.
     pub stage: Stage,
-    /// Of the policy in training, of the controller alone elsewhere.
+    /// Of the policy in training and in a polish, of the controller alone elsewhere.
     #[serde(with = "bits")]
     pub params: Vec<f32>,
     /// Which episodes, and how.

@@ -8,9 +8,9 @@ use hwasp_experiment::Experiment;
 
 use crate::assemble::{Assembly, Portion};
 use crate::checkpoint::Checkpoint;
-use crate::collect::{Collector, EpisodesRequest, ExperimentText, Stage};
+use crate::collect::{Collector, EpisodesRequest, ExperimentText};
 use crate::error::TrainError;
-use crate::learned::{Clock, Learned, LoopContext};
+use crate::learned::{Learned, LoopContext};
 use crate::observer::{Event, FailedIteration};
 use crate::returns::{Returns, mean_terms};
 use crate::running::Running;
@@ -46,6 +46,7 @@ impl Persist for Gradient<'_> {
         with.part("loop", &mut self.learned)?;
         with.part("learner", &mut *self.learner)?;
         with.part("running", &mut self.running)?;
+        self.assembly.exchange_main(with)?;
         match &mut self.acting {
             Some(acting) => with.vector("acting", acting),
             None => Ok(()),
@@ -59,30 +60,9 @@ pub(crate) fn gradient(
     run: &mut LoopContext<'_>,
     from: Option<&Archive>,
 ) -> Result<Learned, TrainError> {
-    let budget = assembly.experiment().train.env_steps;
-    let mut state = Gradient::new(assembly, from)?;
-    run.observer.on(Event::Started {
-        env_steps: budget,
-        resumed: from.map(|_| state.learned.env_steps),
-        learner: state.learner.metric_names(),
-        terms: run.terms,
-        totals: &assembly.total_names(),
-    })?;
-    run.clock = Clock::start(state.learned.wall_s);
-    while state.portion().is_some() {
-        if (run.stopped)() {
-            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
-            return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
-        }
-        state.iterate(run)?;
-        if run.observer.due() {
-            run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
-        }
-    }
-    // What is left to do, an evaluation, may be long.
-    run.observer.on(Event::Checkpoint(&state.checkpoint()?))?;
-    state.learned.params = state.params();
-    Ok(state.learned)
+    let state = Gradient::new(assembly, from)?;
+    run.begin(assembly, &state.learned, from.is_some())?;
+    state.follow(run)
 }
 
 impl<'a> Gradient<'a> {
@@ -108,6 +88,24 @@ impl<'a> Gradient<'a> {
         let mut state = Self::beginning(assembly, params);
         state.running.go_on(&state.learner.params()[assembly.policy.normalizer_params()], env_steps);
         state
+    }
+
+    /// Follows the gradient until the budget is spent.
+    pub(crate) fn follow(mut self, run: &mut LoopContext<'_>) -> Result<Learned, TrainError> {
+        while self.portion().is_some() {
+            if (run.stopped)() {
+                run.observer.on(Event::Checkpoint(&self.checkpoint()?))?;
+                return Err(run.interrupted(&self.learned));
+            }
+            self.iterate(run)?;
+            if run.observer.due() {
+                run.observer.on(Event::Checkpoint(&self.checkpoint()?))?;
+            }
+        }
+        // What is left to do, an evaluation, may be long.
+        run.observer.on(Event::Checkpoint(&self.checkpoint()?))?;
+        self.learned.params = self.params();
+        Ok(self.learned)
     }
 
     /// The policy's parameters: the learner's, and the statistics so far.
@@ -137,8 +135,7 @@ impl<'a> Gradient<'a> {
         let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
         self.learned.env_steps = env_steps;
         self.learned.discarded_episodes += batch.faults.len() as u64;
-        let policy = &self.assembly.policy;
-        let totals = policy.space().totals(&policy.design(self.learner.params()));
+        let totals = self.assembly.totals(self.learner.params());
         let returns = whole_returns(&batch, self.assembly.experiment().discount());
         Ok(self.learned.record(returns, update.values().to_vec(), totals, run)?)
     }
@@ -285,7 +282,7 @@ fn request(
     let Experiment { seed, train, .. } = assembly.experiment();
     EpisodesRequest {
         experiment: experiment.clone(),
-        stage: Stage::Training,
+        stage: assembly.stage(),
         params: stand.params.clone(),
         episodes: Episodes {
             seed: *seed,

@@ -6,8 +6,10 @@ use std::time::Instant;
 use hwasp_algos::{Archive, Exchange, Persist, StateError};
 use hwasp_core::Executor;
 
+use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
 use crate::collect::{Collector, ExperimentText};
+use crate::error::TrainError;
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
 use crate::returns::Returns;
@@ -27,8 +29,32 @@ pub(crate) struct LoopContext<'a> {
     /// Whether someone wants it to end.
     pub(crate) stopped: &'a (dyn Fn() -> bool + Sync),
     pub(crate) clock: Clock,
+    /// Real simulator steps that all of it may take, at most.
+    pub(crate) budget: u64,
+    /// The learner's metrics that rows tell; NaN where a search has none of them.
+    pub(crate) metrics: &'a [&'a str],
     /// The terms of the reward that rows tell.
     pub(crate) terms: &'a [String],
+}
+
+impl LoopContext<'_> {
+    /// Tells that training begins, or goes on, and starts the clock.
+    pub(crate) fn begin(&mut self, assembly: &Assembly, learned: &Learned, resumed: bool) -> Result<(), ObserverError> {
+        self.observer.on(Event::Started {
+            env_steps: self.budget,
+            resumed: resumed.then_some(learned.env_steps),
+            learner: self.metrics,
+            terms: self.terms,
+            totals: &assembly.total_names(),
+        })?;
+        self.clock = Clock::start(learned.wall_s);
+        Ok(())
+    }
+
+    /// The error of a training that was asked to stop.
+    pub(crate) fn interrupted(&self, learned: &Learned) -> TrainError {
+        TrainError::Interrupted { env_steps: learned.env_steps, budget: self.budget }
+    }
 }
 
 /// The time that a training has taken.
@@ -66,6 +92,8 @@ pub(crate) struct Learned {
     pub(crate) faulty_iterations: u64,
     /// Time it took, s.
     pub(crate) wall_s: f64,
+    /// Steps that polished, where it came to its end and did.
+    pub(crate) polish_steps: Option<u64>,
     /// Mean discounted and undiscounted returns of the last iterations that have some.
     recent: VecDeque<(f64, f64)>,
 }
@@ -76,7 +104,7 @@ impl Learned {
     pub(crate) fn record(
         &mut self,
         returns: Option<Returns>,
-        learner: Vec<f64>,
+        mut learner: Vec<f64>,
         design_totals: Vec<f64>,
         run: &mut LoopContext<'_>,
     ) -> Result<(), ObserverError> {
@@ -84,6 +112,7 @@ impl Learned {
         let none = Returns { discounted: f64::NAN, undiscounted: f64::NAN, terms: Vec::new() };
         let Returns { discounted, undiscounted, mut terms } = returns.unwrap_or(none);
         terms.resize(run.terms.len(), f64::NAN);
+        learner.resize(run.metrics.len(), f64::NAN);
         if self.recent.len() > TRAILING {
             self.recent.pop_front();
         }

@@ -11,7 +11,7 @@ use self::space::SearchSpace;
 use self::state::{Scored, State};
 use crate::assemble::{Assembly, FINAL_EPISODES};
 use crate::error::TrainError;
-use crate::learned::{Clock, Learned, LoopContext};
+use crate::learned::{Learned, LoopContext};
 use crate::observer::Event;
 use crate::returns::Returns;
 
@@ -22,17 +22,9 @@ pub(crate) fn search(
     run: &mut LoopContext<'_>,
     from: Option<&Archive>,
 ) -> Result<Learned, TrainError> {
-    let spec = assembly.experiment();
     let space = SearchSpace::new(assembly);
     let mut state = space.state(from)?;
-    run.observer.on(Event::Started {
-        env_steps: spec.train.env_steps,
-        resumed: from.map(|_| state.learned.env_steps),
-        learner: &[],
-        terms: run.terms,
-        totals: &assembly.total_names(),
-    })?;
-    run.clock = Clock::start(state.learned.wall_s);
+    run.begin(assembly, &state.learned, from.is_some())?;
     while state.search.stopped().is_none() {
         let mut candidates = state.search.ask();
         candidates.truncate(assembly.affordable(candidates.len(), state.learned.env_steps));

@@ -11,10 +11,10 @@ use crate::collect::{Collector, ExperimentText};
 use crate::error::TrainError;
 use crate::evaluate::evaluate_by;
 use crate::evaluation::Evaluation;
-use crate::gradient::{Gradient, gradient, repeat_by};
+use crate::gradient::{Gradient, repeat_by};
 use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer};
-use crate::search::{best_so_far, search};
+use crate::polish::{learn, params_at};
 use crate::worker::LocalCollector;
 
 /// What a training gave.
@@ -39,6 +39,8 @@ pub struct Trained {
     pub first_failure: Option<String>,
     /// Episodes whose physics failed; their steps are charged, and nothing was learned from them.
     pub discarded_episodes: u64,
+    /// Steps that polished the controller, of those above; none where the experiment asks for no polish.
+    pub polish_steps: Option<u64>,
     /// The final design on held-out starts.
     pub evaluation: Evaluation,
 }
@@ -87,12 +89,12 @@ pub fn train_by(
         observer: &mut *observer,
         stopped: &stopped,
         clock: Clock::start(0.0),
+        budget: spec.train.env_steps,
+        metrics: if spec.method.searches() && !assembly.polishes() { &[] } else { assembly.metric_names() },
         // Of a candidate's training only the returns come back.
         terms: if spec.method.trains_inside() { &[] } else { &assembly.worlds.training.env.terms },
     };
-    let from = from.map(|checkpoint| &checkpoint.archive);
-    let learned =
-        if spec.method.searches() { search(assembly, &mut run, from)? } else { gradient(assembly, &mut run, from)? };
+    let learned = learn(assembly, &mut run, from.map(|checkpoint| &checkpoint.archive))?;
     let wall_s = run.clock.wall_s();
     observer.on(Event::Evaluating)?;
     let asked = (spec.train.evaluation_episodes as u64, spec.train.evaluation_seed);
@@ -108,6 +110,7 @@ pub fn train_by(
         failed_candidates: spec.method.searches().then_some(learned.failed_candidates),
         first_failure: learned.first_failure,
         discarded_episodes: learned.discarded_episodes,
+        polish_steps: learned.polish_steps,
         evaluation,
         params: learned.params,
     })
@@ -120,15 +123,6 @@ pub fn train_by(
 /// Where a parameter is no number.
 pub fn beginning(assembly: &Assembly, params: Vec<f32>, env_steps: u64) -> Result<Checkpoint, TrainError> {
     Ok(Gradient::further(assembly, params, env_steps).checkpoint()?)
-}
-
-/// The parameters that a training had come to: the learner's, or the best of a search.
-pub fn params_at(assembly: &Assembly, checkpoint: &Checkpoint) -> Result<Vec<f32>, TrainError> {
-    let archive = &checkpoint.archive;
-    if assembly.experiment().method.searches() {
-        return best_so_far(assembly, archive);
-    }
-    Ok(Gradient::new(assembly, Some(archive))?.params())
 }
 
 /// What is to be said of trainings that have not [`moved`].
@@ -144,7 +138,7 @@ pub fn moved(assembly: &Assembly, from: Option<&Checkpoint>, params: &[f32]) -> 
     first.iter().zip(params).any(|(from, to)| (to - from).abs() > LEAST * from.abs().max(1.0))
 }
 
-/// The iteration that follows a state once more: its batch, where it came so far, and what the update said.
+/// The iteration that follows a state of a [stage](crate::stage_at) once more: its batch, where it came so far, and what the update said.
 ///
 /// # Errors
 /// Of a state that is not one of this experiment. What fails in the iteration is in the result.

@@ -75,6 +75,8 @@ impl Worker {
             observer: &mut StateOnly(watch),
             stopped: &|| watch.stopped(),
             clock: Clock::start(0.0),
+            budget: request.env_steps,
+            metrics: &[],
             terms: &[],
         };
         match gradient(&inner, &mut context, request.from.as_ref()) {
@@ -181,6 +183,10 @@ impl Prepared {
             }
             Stage::Deployment(design) => fixed(&assembly.worlds.deployment, design),
             Stage::StandIn(design) => fixed(&assembly.native(design)?, design),
+            Stage::Polish(design) => {
+                let (world, policy) = assembly.polished_in(design)?;
+                Ok(Sampler::new(Arc::new(policy), world.make, steps))
+            }
         }
     }
 }

@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::{Archive, PpoKind};
 use hwasp_core::{Batch, End, Episode, Executor, Moments, RolloutError};
-use hwasp_experiment::Catalogue;
-use hwasp_testing::{Keeper, Settings, UNSCALED, catalogue, executor, run, small, told};
+use hwasp_experiment::{Catalogue, PolishWorld};
+use hwasp_testing::{Keeper, POLISH, Settings, UNSCALED, catalogue, executor, layers, resolve, run, small, told};
 use hwasp_training::collect::{
     Answer, CandidateAnswer, CandidateRequest, CollectError, Collector, EpisodeAnswer, EpisodesRequest, ExperimentText,
     Request, Stage, Watch,
@@ -67,8 +67,9 @@ impl Collector for Elsewhere {
 
 #[test]
 fn another_process_gives_the_same_bits() {
-    const KINDS: [(&str, Settings); 5] = [
+    const KINDS: [(&str, Settings); 6] = [
         ("hwasp", &[]),
+        ("hwasp", POLISH),
         ("minimal", UNSCALED),
         ("cmaes", &[("train.env_steps", "20000")]),
         ("ars", &[("ars.variant", "v2-t"), ("ars.directions", "8"), ("train.env_steps", "20000")]),
@@ -87,6 +88,37 @@ fn another_process_gives_the_same_bits() {
             assert_eq!(evaluation, evaluate(&assembly, &here.params, (7, 3), &*executor).unwrap(), "{method}");
         }
     }
+}
+
+/// A worker elsewhere makes the world that stands in for the built robot from the experiment and the design of a request.
+#[test]
+fn another_process_polishes_in_the_world_that_stands_in() {
+    let settings = [
+        ("train.env_steps", "2400"),
+        ("train.steps_per_iteration", "0"),
+        ("train.episodes_per_iteration", "4"),
+        ("train.episode_steps", "100"),
+        ("train.evaluation_episodes", "2"),
+        ("ppo.minibatch_rows", "100"),
+        ("baseline.minibatch_rows", "100"),
+        ("polish.share", "0.4"),
+        ("polish.world", "native"),
+    ];
+    let layers = settings.iter().fold(layers("balanced-arm"), |layers, (k, v)| layers.with_override(k, v));
+    let assembly = Assembly::new(&resolve(layers, None).unwrap()).unwrap();
+    let (here, keeper) = run(&assembly, None, 2);
+    // 1440 steps hold 14 episodes of the main stage; the polish has the rest.
+    assert_eq!(here.polish_steps, Some(1000));
+    let (executor, stop): (Arc<dyn Executor>, _) = (executor(1).into(), AtomicBool::new(false));
+    let mut rows = Keeper::default();
+    let there = train_by(&Elsewhere(Arc::clone(&executor)), None, &assembly, &*executor, &mut rows, &stop).unwrap();
+    assert_eq!(told(&here), told(&there));
+    assert_eq!(format!("{:?}", keeper.rows), format!("{:?}", rows.rows));
+    // It is another world than that of the evaluation.
+    let mut spec = assembly.experiment().clone();
+    spec.polish.world = PolishWorld::Deployment;
+    let deployed = run(&Assembly::new(&spec).unwrap(), None, 1).0;
+    assert_ne!(deployed.params, here.params);
 }
 
 /// Forgets the last job.

@@ -33,7 +33,7 @@ pub(crate) fn experiment(spec: &Experiment, assembly: &Assembly, trial: &Trial) 
         if assembly.generation().is_some() { "it gives" } else { "training varies" },
         varied(policy.action_names(), &assembly.worlds.training.env, &policy.space().names()),
         grouped(spec.train.env_steps),
-        training(spec, assembly, trial),
+        training(assembly, trial),
     );
     world(&mut text, &assembly.worlds.training.env, &spec.task.built().words, assembly);
     tried(&mut text, assembly, trial);
@@ -162,7 +162,17 @@ fn over_at_once(trial: &Trial) -> String {
 }
 
 /// The parts of a training.
-fn training(spec: &Experiment, assembly: &Assembly, trial: &Trial) -> String {
+fn training(assembly: &Assembly, trial: &Trial) -> String {
+    let main = stage(&assembly.main_stage(), trial);
+    if !assembly.polishes() {
+        return main;
+    }
+    format!("{main}, then {} steps to polish the controller", grouped(assembly.polish_steps()))
+}
+
+/// The parts of its main stage.
+fn stage(assembly: &Assembly, trial: &Trial) -> String {
+    let spec = assembly.experiment();
     if let Some((popsize, each)) = assembly.generation() {
         let generations = spec.train.env_steps / (popsize as u64 * each);
         return format!(

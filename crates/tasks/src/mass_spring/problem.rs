@@ -276,6 +276,7 @@ impl Problem for BarLength {
         vec![
             Preset::new("bar-length", include_str!("../../../../experiments/bar-length.toml")),
             Preset::new("bar-length-50", include_str!("../../../../experiments/bar-length-50.toml")),
+            Preset::new("bar-length-td3", include_str!("../../../../experiments/bar-length-td3.toml")),
             Preset::new("paper/bar-length", include_str!("../../../../experiments/paper/bar-length.toml")),
             Preset::new("paper/bar-length-50", include_str!("../../../../experiments/paper/bar-length-50.toml")),
         ]

@@ -150,14 +150,14 @@ impl Assembly {
             let (method, parameters) = (self.experiment().method.name(), self.policy.space().len());
             return Err(AssembleError::NothingToSearch { method, parameters });
         }
-        let given = self.experiment().train.env_steps;
+        let (given, polish) = (self.experiment().train.env_steps, self.polish_steps());
         if self.experiment().method == Method::BoRl && given / each > MOST_MODELLED {
             return Err(AssembleError::Model { candidates: given / each });
         }
         let popsize = if self.experiment().method.divides_generations() { 1 } else { popsize };
         let needed = popsize as u64 * each + self.final_steps();
-        if given < needed {
-            return Err(AssembleError::Budget { given, needed, popsize, each });
+        if given - polish < needed {
+            return Err(AssembleError::Budget { given, polish, needed, popsize, each });
         }
         Ok(())
     }

@@ -73,8 +73,7 @@ impl Generation<'_> {
             let count = self.candidates.len();
             assert!(stopped(), "candidate {open} of {count} was not scored, and nobody asked the search to stop");
             observer.on(Event::Checkpoint(&state.checkpoint(clock)?))?;
-            let budget = spec.train.env_steps;
-            return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget });
+            return Err(TrainError::Interrupted { env_steps: state.learned.env_steps, budget: run.budget });
         }
         let scored = |slot| match slot {
             Slot::Scored(scored) => scored,

@@ -95,6 +95,7 @@ fn experiment(
     // Schedules of task, noise and learning rate do not begin again.
     spec.train.progress_start = 1.0;
     spec.train.env_steps = env_steps;
+    spec.polish.share = 0.0;
     (spec.train.evaluation_episodes, spec.train.evaluation_seed) = (episodes as usize, seed);
     spec
 }

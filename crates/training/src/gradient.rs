@@ -95,7 +95,7 @@ impl<'a> Gradient<'a> {
         while self.portion().is_some() {
             if (run.stopped)() {
                 run.observer.on(Event::Checkpoint(&self.checkpoint()?))?;
-                return Err(run.interrupted(&self.learned));
+                return Err(TrainError::Interrupted { env_steps: self.learned.env_steps, budget: run.budget });
             }
             self.iterate(run)?;
             if run.observer.due() {

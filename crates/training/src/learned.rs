@@ -9,7 +9,6 @@ use hwasp_core::Executor;
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
 use crate::collect::{Collector, ExperimentText};
-use crate::error::TrainError;
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
 use crate::returns::Returns;
@@ -49,11 +48,6 @@ impl LoopContext<'_> {
         })?;
         self.clock = Clock::start(learned.wall_s);
         Ok(())
-    }
-
-    /// The error of a training that was asked to stop.
-    pub(crate) fn interrupted(&self, learned: &Learned) -> TrainError {
-        TrainError::Interrupted { env_steps: learned.env_steps, budget: self.budget }
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use hwasp_core::{Environment, Step, Watch, Watched};
 use hwasp_experiment::{Files, Folder, Layers};
-use hwasp_testing::{executor, run, small};
+use hwasp_testing::{OFF_POLICY, POLISH, executor, run, small};
 use hwasp_training::{Assembly, evaluate};
 
 /// Writes down how much of training is done at each start.
@@ -75,6 +75,36 @@ fn a_training_begins_where_its_schedules_are_to_begin() {
     assert_eq!(trained.params, assembly.init());
     let (assembly, _) = recorded("hwasp", &[("ppo.learning_rate_final", "0.0")]);
     assert_ne!(run(&assembly, None, 1).0.params, assembly.init());
+}
+
+/// The schedules of a main stage end with it, and those of its polish go from `progress_start` to their end.
+#[test]
+fn a_polish_has_schedules_of_its_own() {
+    let (mut assembly, told) = recorded("hwasp", POLISH);
+    assembly.worlds.deployment = assembly.worlds.training.clone();
+    run(&assembly, None, 1);
+    let mut told = std::mem::take(&mut *told.lock().unwrap());
+    told.dedup();
+    // Of 9600 steps 5760 are five iterations, the last of 960 steps, and 3840 are three.
+    let main = (0..5).map(|k| f64::from(1200 * k) / 5760.0);
+    let polish = (0..3).map(|k| 0.2 + (1.0 - 0.2) * (f64::from(1200 * k) / 3840.0));
+    // And the evaluation.
+    assert_eq!(told, main.chain(polish).chain([1.0]).collect::<Vec<_>>());
+}
+
+/// A design that moved before its controller could do anything ran away to where no controller gets it back.
+#[test]
+fn under_td3_a_design_may_wait_for_its_controller() {
+    let own = [("td3.warmup_steps", "500"), ("td3.design_start", "0.5"), ("train.env_steps", "9600")];
+    let all = OFF_POLICY.iter().chain(&own).chain(&[("train.evaluation_episodes", "4")]);
+    let layers = all.fold(hwasp_testing::layers("reach"), |layers, (key, value)| layers.with_override(key, value));
+    let assembly = Assembly::new(&hwasp_testing::resolve(layers, None).unwrap()).unwrap();
+    let (trained, kept) = run(&assembly, None, 1);
+    let totals: Vec<f64> = kept.rows.iter().map(|row| row.design_totals[0]).collect();
+    // The fifth iteration of 1200 steps begins half way.
+    assert!(totals[..4].iter().all(|&total| total == totals[0]), "{totals:?}");
+    assert_ne!(totals[4], totals[0]);
+    assert_ne!(trained.params, assembly.init());
 }
 
 /// A robot from text is rewarded by how much of training is done; evaluated it is at the end, however early that is.

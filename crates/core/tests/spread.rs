@@ -1,5 +1,7 @@
 //! Controllers that tell how widely their commands spread.
 
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
+
 mod common;
 
 use hwasp_core::Placement::{self, Fixed, Graph};

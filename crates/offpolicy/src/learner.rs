@@ -189,6 +189,9 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let (rows, tau, delay) = (settings.batch_rows, settings.polyak, settings.policy_delay as u64);
         let value = self.learned.scaling.value;
         self.sample.draw(&self.replay, (settings.n_step, settings.discount), value, chance);
+        let learned = &self.learned;
+        let next = if R::SLOW_POLICY { &learned.slow } else { &learned.params };
+        self.sample.show_design(&*self.policy, &learned.params, next);
         self.run(executor, smoothing, Worker::judge);
         self.descend_critics(&rates.critic);
         sums.squares += self.sum(|worker| worker.squares) / rows as f64;

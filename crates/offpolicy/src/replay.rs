@@ -9,6 +9,8 @@ use rand::RngExt;
 pub(crate) struct Dims {
     /// Of the controller's input.
     pub(crate) obs: usize,
+    /// How many of them, the last, show it the design.
+    pub(crate) design: usize,
     /// Of the law's state.
     pub(crate) state: usize,
     /// Of what an episode is about.
@@ -22,6 +24,7 @@ impl Dims {
     pub(crate) fn of(policy: &impl Policy) -> Self {
         Self {
             obs: policy.obs_dim(),
+            design: policy.seen_design(&vec![0.0; policy.param_count()]).len(),
             state: policy.state_dim(),
             context: policy.context_dim(),
             action: policy.action_dim(),
@@ -223,7 +226,7 @@ impl Replay {
         }
         let frames = undo.held;
         self.steps -= self.mark[frames..].iter().filter(|&&mark| mark == Mark::Step).count();
-        let Dims { obs, state, context, action } = self.dims;
+        let Dims { obs, state, context, action, .. } = self.dims;
         self.obs.truncate(frames * obs);
         self.state.truncate(frames * state);
         self.context.truncate(frames * context);
@@ -291,7 +294,7 @@ impl Replay {
 
 impl Persist for Replay {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        let Dims { obs, state, context, action } = self.dims;
+        let Dims { obs, state, context, action, .. } = self.dims;
         with.series("reward", &mut self.reward)?;
         let frames = self.reward.len();
         if frames > self.capacity {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use hwasp_algos::BLOCK;
-use hwasp_core::{Rows, Stream};
+use hwasp_core::{Policy, Rows, Stream};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::replay::{Dims, Replay};
@@ -87,6 +87,28 @@ impl Sample {
         self.now_noise.fill_with(|| StandardNormal.sample(chance));
     }
 
+    /// Shows the controller the design of now, whatever it was when a step was taken: with these parameters at the moments, and
+    /// with those of the policy that acts next at the next ones. There it sees what was drawn for the episode, which is held.
+    pub(crate) fn show_design<P: Policy>(&mut self, policy: &P, params: &[f32], next_params: &[f32]) {
+        let (width, design) = (self.dims.obs, self.dims.design);
+        if design == 0 {
+            return;
+        }
+        let draws = policy.seen_draws();
+        for (moments, params) in [(&mut self.now, params), (&mut self.next, next_params)] {
+            let seen = policy.seen_design(params);
+            for inputs in moments.obs.chunks_exact_mut(width) {
+                inputs[width - design..].copy_from_slice(&seen);
+            }
+        }
+        for (a, &(at, (lo, hi))) in draws.iter().enumerate() {
+            let held = &self.next.action[a * self.count..][..self.count];
+            for (inputs, &value) in self.next.obs.chunks_exact_mut(width).zip(held) {
+                inputs[width - design + at] = 2.0 * (value - lo) / (hi - lo) - 1.0;
+            }
+        }
+    }
+
     /// Row `r` is this step: it counts `n_step` rewards, and values are measured by their centre and scale.
     pub(crate) fn take(
         &mut self,
@@ -123,14 +145,20 @@ impl Sample {
         }
     }
 
+    /// One component of the actions that were taken in a block.
+    pub(crate) fn held(&self, component: usize, block: &Range<usize>) -> &[f32] {
+        &self.now.action[component * self.count + block.start..][..block.len()]
+    }
+
     /// The actions that were taken in a block, and the distance between their columns.
     pub(crate) fn actions(&self, block: &Range<usize>) -> (&[f32], usize) {
         (&self.now.action[block.start..], self.count)
     }
 }
 
-/// What a critic sees, in this order: the controller's input, the law's state and the episode's context where it is shown them,
-/// the action.
+/// What a critic sees, in this order: the observation as the controller sees it, the law's state and the episode's context where it is shown them,
+/// the action. Of the design it sees what is in the action, and nothing twice: its slope by the design has to be all that the design
+/// is worth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     dims: Dims,
@@ -143,9 +171,15 @@ impl View {
         Self { dims, state: state && dims.state > 0, context: context && dims.context > 0 }
     }
 
+    /// The controller's inputs but for the design.
+    fn observed(&self) -> usize {
+        self.dims.obs - self.dims.design
+    }
+
     /// Where the action begins.
     pub(crate) fn action_at(&self) -> usize {
-        self.dims.obs + if self.state { self.dims.state } else { 0 } + if self.context { self.dims.context } else { 0 }
+        let more = |shown: bool, count: usize| if shown { count } else { 0 };
+        self.observed() + more(self.state, self.dims.state) + more(self.context, self.dims.context)
     }
 
     pub(crate) fn width(&self) -> usize {
@@ -163,8 +197,8 @@ impl View {
     ) {
         let Dims { obs, context, .. } = self.dims;
         for (r, to) in block.clone().zip(to.chunks_exact_mut(self.width())) {
-            to[..obs].copy_from_slice(&moments.obs[r * obs..][..obs]);
-            let mut at = obs;
+            let mut at = self.observed();
+            to[..at].copy_from_slice(&moments.obs[r * obs..][..at]);
             if self.state {
                 for (s, affine) in scaling.state.iter().enumerate() {
                     to[at + s] = affine.apply(moments.state[s * sample.count + r]);

@@ -174,6 +174,10 @@ impl<P: Policy> Worker<P> {
             }
         }
         step.limit(&mut self.actions, rows);
+        // What was drawn for the episode is held.
+        for a in 0..step.policy.drawn_actions() {
+            self.actions[a * BLOCK..][..rows].copy_from_slice(sample.held(a, block));
+        }
         let inputs = &mut self.inputs[..rows * step.view.width()];
         step.view.fill(sample, &sample.next, block, step.scaling, inputs);
         step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);

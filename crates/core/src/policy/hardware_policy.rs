@@ -374,6 +374,19 @@ impl Policy for HardwarePolicy {
         self.composition.layout.drawn
     }
 
+    fn seen_design(&self, params: &[f32]) -> Vec<f32> {
+        let mut seen = vec![0.0; self.obs_dim() - self.observations];
+        self.see_design(&self.design(params), &mut seen);
+        seen
+    }
+
+    fn seen_draws(&self) -> Vec<(usize, (f32, f32))> {
+        let layout = &self.composition.layout;
+        let drawn = if self.spec.sees_design { &layout.sampled[..layout.drawn] } else { &[] };
+        let limits = |(lo, hi): (f64, f64)| (lo as f32, hi as f32);
+        drawn.iter().map(|&i| (i, limits(self.space().bounds(i)))).collect()
+    }
+
     fn start_shows_draw(&self) -> bool {
         self.start_shows_draw
     }

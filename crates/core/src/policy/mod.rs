@@ -97,6 +97,15 @@ pub trait Policy: Send + Sync {
     fn drawn_actions(&self) -> usize {
         0
     }
+    /// What the controller sees of the design with these parameters: its last inputs. Nothing where it sees none.
+    fn seen_design(&self, _params: &[f32]) -> Vec<f32> {
+        Vec::new()
+    }
+    /// Which of those inputs shows each component of the action that is drawn once an episode, and the limits that it goes from
+    /// -1 to 1 between. As many as there are such components, or none where the controller sees none.
+    fn seen_draws(&self) -> Vec<(usize, (f32, f32))> {
+        Vec::new()
+    }
     /// Whether what there is to see at the start of an episode tells what was drawn for it. A value of the start is no
     /// baseline for the draw then: it would take away what the draw is worth.
     fn start_shows_draw(&self) -> bool {

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const DIMS: Dims = Dims { obs: 1, state: 1, context: 1, action: 1 };
+const DIMS: Dims = Dims { obs: 1, design: 0, state: 1, context: 1, action: 1 };
 
 /// Episodes of these lengths and ends; every number tells its step, counted from `first`.
 fn batch(first: usize, episodes: &[(usize, End)]) -> Batch {

@@ -13,6 +13,10 @@ use crate::td3::Td3Config;
 
 /// A motor pushes against a spring: effort = push - k·y with k in [0, 4] N/m, and the controller sees y.
 fn policy(hidden: &[usize], state_dependent_std: bool) -> HardwarePolicy {
+    policy_with(hidden, state_dependent_std, Placement::Graph, false)
+}
+
+fn policy_with(hidden: &[usize], state_dependent_std: bool, placement: Placement, sees_design: bool) -> HardwarePolicy {
     let port = |name: &str| Port { name: name.into(), dimension: Dimension::None };
     let stiffness = DesignGroup {
         name: "k".into(),
@@ -43,10 +47,10 @@ fn policy(hidden: &[usize], state_dependent_std: bool) -> HardwarePolicy {
         state_dependent_std,
         observation_center: vec![0.0],
         observation_scale: vec![1.0],
-        sees_design: false,
+        sees_design,
         normalize: None,
         law: Law::from_program(spring, DesignSpace::new(vec![stiffness]).unwrap(), ports).unwrap(),
-        placements: vec![Placement::Graph],
+        placements: vec![placement],
         noise: Noise { command: vec![0.1.into()], effort: vec![0.5.into()], design: 0.1.into(), train: false },
     };
     HardwarePolicy::new(spec, &env).unwrap()
@@ -63,14 +67,16 @@ const NOISE: f64 = 0.2;
 
 /// Three episodes of a step; the last one is over for good.
 fn replay(policy: &HardwarePolicy) -> Replay {
-    let mut batch = Batch { obs: Y.to_vec(), state: Y.to_vec(), reward: REWARD.to_vec(), ..Batch::default() };
+    let mut batch = Batch { state: Y.to_vec(), reward: REWARD.to_vec(), ..Batch::default() };
+    let seen = |y: f32| [vec![y], vec![0.0; policy.obs_dim() - 1]].concat();
+    batch.obs = Y.into_iter().flat_map(seen).collect();
     batch.action = TAKEN.concat();
     for (row, &next) in NEXT.iter().enumerate() {
         batch.episodes.push(Episode {
             rows: row..row + 1,
             end: if row == 2 { End::Terminated } else { End::Truncated },
             cut: false,
-            last_obs: vec![next],
+            last_obs: seen(next),
             last_state: vec![next],
             context: vec![],
             log_prob: 0.0,
@@ -358,4 +364,60 @@ fn the_temperature_follows_entropy() {
         assert_eq!(after > before, grows);
         assert!(((after / before).ln().abs() - 3e-4).abs() < 1e-6, "Adam's first step is its rate: {before}, {after}");
     }
+}
+
+/// A stiffness that is drawn once an episode, and a controller that sees it. What follows a step has the stiffness of its episode, not
+/// that of now; the controller is shown the stiffness of now where it is to improve; critics see it in the action alone. They saw what
+/// came of a stiffness for a step, and took the present one for what followed.
+#[test]
+fn a_drawn_design_is_held() {
+    let policy = policy_with(&[], false, Placement::Episode, true);
+    let dims = Dims::of(&policy);
+    assert_eq!((dims.obs, dims.design, dims.action), (2, 1, 2), "y and k; k and push");
+    // Drawn were 1, 2 and 3 N/m of 0 to 4, which the controller sees as -0.5, 0 and 0.5.
+    let (drawn, seen) = ([1.0_f32, 2.0, 3.0], [-0.5_f32, 0.0, 0.5]);
+    let mut batch = Batch { state: Y.to_vec(), reward: REWARD.to_vec(), ..Batch::default() };
+    for row in 0..3 {
+        batch.obs.extend([Y[row], seen[row]]);
+        batch.action.extend([drawn[row], 0.25]);
+        batch.episodes.push(Episode {
+            rows: row..row + 1,
+            end: End::Truncated,
+            cut: false,
+            last_obs: vec![NEXT[row], seen[row]],
+            last_state: vec![NEXT[row]],
+            context: vec![],
+            log_prob: 0.0,
+            outcome: None,
+            terms: vec![],
+        });
+    }
+    let mut replay = Replay::new(dims, 100);
+    replay.push(&batch, &policy.action_limits());
+    let mut sample = Sample::new(dims, 3, 0, 2);
+    for (r, at) in replay.step_frames().enumerate() {
+        sample.take(r, &replay, at, (1, DISCOUNT), (0.0, 1.0));
+    }
+    // Weights of y and of the seen k, bias, and u, for which k is 3.2 N/m and seen as 0.6.
+    let params = vec![0.0, 1.0, 0.0, 4.0_f32.ln()];
+    sample.show_design(&policy, &params, &params);
+    let rows = |moments| sample.rows(moments, &(0..3)).obs.to_vec();
+    let close = |given: Vec<f32>, wanted: [f32; 6]| {
+        assert!(given.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{given:?} instead of {wanted:?}");
+    };
+    close(rows(&sample.now), [Y[0], 0.6, Y[1], 0.6, Y[2], 0.6]);
+    close(rows(&sample.next), [NEXT[0], -0.5, NEXT[1], 0.0, NEXT[2], 0.5]);
+
+    let view = View::new(dims, false, false);
+    assert_eq!(view.width(), 3, "y, k, push");
+    let mut scene = Scene::of(Td3Config::default(), policy, &[], vec![(0.0, 0.0); 2]);
+    (scene.sample, scene.params) = (sample, params);
+    // Both critics say k alone.
+    scene.set_critics([[0.0, 1.0, 0.0, 0.0]; 2]);
+    let mut worker = scene.worker();
+    worker.judge(&scene.step());
+    let squares = (0..3).map(|r| (f64::from(drawn[r]) * (1.0 - DISCOUNT) - REWARD[r]).powi(2)).sum::<f64>();
+    assert!((worker.squares - squares).abs() < 1e-4, "{} and {squares}", worker.squares);
+    worker.improve(&scene.step());
+    assert!((worker.values - 3.0 * 3.2).abs() < 1e-4, "{}: the stiffness of now", worker.values);
 }

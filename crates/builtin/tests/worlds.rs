@@ -10,7 +10,9 @@ fn groups_efforts_and_observations_are_those_of_the_task() {
     let catalogue = hwasp_builtin::catalogue();
     for name in catalogue.presets().iter().map(|preset| preset.name) {
         for (method, _) in Method::ALL {
-            let spec = resolve(load(name, &catalogue).unwrap(), Some(method), &catalogue).unwrap();
+            // A budget that holds a generation of every search.
+            let layers = load(name, &catalogue).unwrap().with_override("train.env_steps", "4e6");
+            let spec = resolve(layers, Some(method), &catalogue).unwrap();
             if name.ends_with("-grasp") && !cfg!(feature = "mujoco") {
                 let error = Assembly::new(&spec).err().unwrap().to_string();
                 assert!(error.starts_with(&format!("{name} needs the MuJoCo engine")), "{error}");

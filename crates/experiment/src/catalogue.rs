@@ -142,7 +142,7 @@ impl Catalogue {
 }
 
 /// Tables of an experiment that are not a learner's.
-pub(crate) const SECTIONS: [&str; 12] = [
+pub(crate) const SECTIONS: [&str; 14] = [
     "task",
     "controller",
     "design",
@@ -152,6 +152,8 @@ pub(crate) const SECTIONS: [&str; 12] = [
     "search",
     "cmaes",
     "ars",
+    "bo",
+    "random",
     "train",
     "polish",
     "methods",

@@ -38,7 +38,7 @@ pub use policy::{
     Reparameterised, Rows, Spread,
 };
 pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, LaneSteps, RolloutError, Sampler, all_failed};
-pub use schedule::share_done;
+pub use schedule::{share_done, share_left};
 pub use sight::{Cord, Form, Sight, Solid};
 pub use streams::{Purpose, Stream, stream};
 pub use units::{Dimension, Unit, UnitError, parse_quantity, split_quantity, unit};

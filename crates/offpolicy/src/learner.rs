@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hwasp_algos::{Adam, AdamConfig, Exchange, LearnError, Learner, Metrics, Persist, StateError, group_rates};
-use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, stream};
+use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, share_left, stream};
 
 use crate::config::ReplayConfig;
 use crate::critic::{Critics, follow};
@@ -136,7 +136,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
 
     fn rates(&self, progress: f64) -> Rates {
         let settings = self.settings();
-        let decay = 1.0 + (settings.learning_rate_final - 1.0) * progress;
+        let decay = share_left(settings.learning_rate_final, progress);
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
         let design = if progress < settings.design_start { 0.0 } else { self.design_lr_scale };
         let critic = (settings.critic_learning_rate * decay) as f32;
@@ -319,7 +319,9 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
 
 impl<P: Policy, R: Rule<P>> Persist for OffPolicy<P, R> {
     fn exchange(&mut self, with: &mut Exchange<'_>) -> Result<(), StateError> {
-        self.forget();
+        if with.loads() {
+            self.forget();
+        }
         with.part("learned", &mut self.learned)?;
         with.part("replay", &mut self.replay)
     }

@@ -94,17 +94,16 @@ impl Sample {
         if design == 0 {
             return;
         }
-        let draws = policy.seen_draws();
-        for (moments, params) in [(&mut self.now, params), (&mut self.next, next_params)] {
+        for (moments, params, held) in
+            [(&mut self.now, params, &[][..]), (&mut self.next, next_params, policy.seen_draws())]
+        {
             let seen = policy.seen_design(params);
             for inputs in moments.obs.chunks_exact_mut(width) {
-                inputs[width - design..].copy_from_slice(&seen);
-            }
-        }
-        for (a, &(at, (lo, hi))) in draws.iter().enumerate() {
-            let held = &self.next.action[a * self.count..][..self.count];
-            for (inputs, &value) in self.next.obs.chunks_exact_mut(width).zip(held) {
-                inputs[width - design + at] = 2.0 * (value - lo) / (hi - lo) - 1.0;
+                for (i, (input, &now)) in inputs[width - design..].iter_mut().zip(&seen).enumerate() {
+                    if !held.contains(&i) {
+                        *input = now;
+                    }
+                }
             }
         }
     }
@@ -143,11 +142,6 @@ impl Sample {
             action: moments.action.get(block.start..).unwrap_or(&[]),
             stride: self.count,
         }
-    }
-
-    /// One component of the actions that were taken in a block.
-    pub(crate) fn held(&self, component: usize, block: &Range<usize>) -> &[f32] {
-        &self.now.action[component * self.count + block.start..][..block.len()]
     }
 
     /// The actions that were taken in a block, and the distance between their columns.

@@ -1,7 +1,7 @@
 //! Twin delayed deep deterministic policy gradients.
 
 use hwasp_algos::{Exchange, Persist, StateError};
-use hwasp_core::{Policy, Rows};
+use hwasp_core::{Policy, Rows, share_left};
 use hwasp_settings::{Fields, Settings};
 
 use crate::config::ReplayConfig;
@@ -76,7 +76,7 @@ impl<P: Policy> Rule<P> for Td3Config {
 
     fn smoothing(&self, scaling: &Scaling, progress: f64) -> Vec<(f32, f32)> {
         let (noise, clip) = (self.target_noise as f32, self.target_noise_clip as f32);
-        let left = (1.0 + (self.target_noise_final - 1.0) * progress) as f32;
+        let left = share_left(self.target_noise_final, progress) as f32;
         let size = |a: &Affine| left * a.scale;
         scaling.action.iter().map(|a| (noise * size(a), clip * size(a))).collect()
     }

@@ -175,8 +175,9 @@ impl<P: Policy> Worker<P> {
         }
         step.limit(&mut self.actions, rows);
         // What was drawn for the episode is held.
+        let (held, stride) = sample.actions(block);
         for a in 0..step.policy.drawn_actions() {
-            self.actions[a * BLOCK..][..rows].copy_from_slice(sample.held(a, block));
+            self.actions[a * BLOCK..][..rows].copy_from_slice(&held[a * stride..][..rows]);
         }
         let inputs = &mut self.inputs[..rows * step.view.width()];
         step.view.fill(sample, &sample.next, block, step.scaling, inputs);

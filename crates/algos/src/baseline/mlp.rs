@@ -1,6 +1,6 @@
 //! A perceptron as value function.
 
-use hwasp_core::{Batch, Purpose, Stream, stream};
+use hwasp_core::{Batch, Purpose, Stream, share_left, stream};
 use hwasp_diff::{Activation, Mlp, MlpTape};
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -215,7 +215,7 @@ impl MlpBaseline {
             self.take_scaling(batch);
         }
         self.follow(targets);
-        let decay = 1.0 + (self.config.learning_rate_final - 1.0) * progress;
+        let decay = share_left(self.config.learning_rate_final, progress);
         Fit {
             rate: vec![(self.config.learning_rate * decay) as f32; self.params.len()],
             order: (0..batch.rows() as u32).collect(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hwasp_core::{Batch, Policy, Purpose, Stream, gaussian, stream};
+use hwasp_core::{Batch, Policy, Purpose, Stream, gaussian, share_left, stream};
 use rand::seq::SliceRandom;
 
 use super::{PpoConfig, metric_names};
@@ -95,7 +95,7 @@ impl<P: Policy> Optimiser<P> {
     /// Learning rates of all parameters at `progress` of training.
     fn learning_rates(&self, progress: f64) -> Vec<f32> {
         let config = &self.config;
-        let rate = config.learning_rate * (1.0 + (config.learning_rate_final - 1.0) * progress);
+        let rate = config.learning_rate * share_left(config.learning_rate_final, progress);
         group_rates(self.policy.groups(), self.params.len(), rate, config.design_lr_scale, config.log_std_lr_scale)
     }
 

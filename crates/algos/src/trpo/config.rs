@@ -1,6 +1,6 @@
 //! Settings.
 
-use hwasp_core::Stream;
+use hwasp_core::{Stream, share_left};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +52,7 @@ pub struct TrpoConfig {
 impl TrpoConfig {
     /// The most mean KL divergence of an update at this share of the training.
     pub(super) fn max_kl_at(&self, progress: f64) -> f64 {
-        self.max_kl * (1.0 + (self.max_kl_final - 1.0) * progress)
+        self.max_kl * share_left(self.max_kl_final, progress)
     }
 }
 

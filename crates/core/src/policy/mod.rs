@@ -101,10 +101,9 @@ pub trait Policy: Send + Sync {
     fn seen_design(&self, _params: &[f32]) -> Vec<f32> {
         Vec::new()
     }
-    /// Which of those inputs shows each component of the action that is drawn once an episode, and the limits that it goes from
-    /// -1 to 1 between. As many as there are such components, or none where the controller sees none.
-    fn seen_draws(&self) -> Vec<(usize, (f32, f32))> {
-        Vec::new()
+    /// Which of those inputs show what was drawn for the episode.
+    fn seen_draws(&self) -> &[usize] {
+        &[]
     }
     /// Whether what there is to see at the start of an episode tells what was drawn for it. A value of the start is no
     /// baseline for the draw then: it would take away what the draw is worth.

@@ -15,11 +15,14 @@ use hwasp_settings::{Fields, Settings};
 /// | `updates_per_step` | 1 | gradient steps per step of the simulator |
 /// | `policy_delay` | 2 for TD3, 1 for SAC | gradient steps of the critics for one of the policy |
 /// | `design_start` | 0 | share of the schedules that is done before the design moves |
+/// | `design_search` | 0 | steps of the simulator from one search of the design by the critics to the next; 0: the design follows their slope |
+/// | `forget_beyond` | 0 | share of its range by which a design parameter moves until the replay is emptied; 0: it is kept |
 /// | `learning_rate` | 3e-4 | of the policy, by Adam |
 /// | `critic_learning_rate` | 3e-4 | of the critics |
 /// | `learning_rate_final` | 1 | fraction of both left at the end of a linear decay |
 /// | `polyak` | 0.005 | share that targets follow by |
 /// | `critic_hidden` | `[256, 256]` | widths of the critics' hidden layers, of ReLU |
+/// | `critic_layer_norm` | false | whether sums of those layers are normalised in each row |
 /// | `privileged` | false | critics see the law's state |
 /// | `context` | false | critics see what the episode is about |
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +45,12 @@ pub struct ReplayConfig {
     /// The share of the schedules that is done before the design moves: a controller that knows nothing yet makes other designs
     /// look good than one that can use them.
     pub design_start: f64,
+    /// Steps of the simulator from one search of the design to the next: it goes where critics see the most value at the starts of
+    /// episodes (Luck et al. 2019). With 0 there is no search, and the design follows the critics' slope.
+    pub design_search: usize,
+    /// The share of its range by which a design parameter moves until the replay is emptied, as one would where the design is in
+    /// the environment. With 0 all is kept: in the graph, old experience stays true.
+    pub forget_beyond: f64,
     /// Step size of Adam for the policy, at the start.
     pub learning_rate: f64,
     /// The same for the critics.
@@ -52,6 +61,9 @@ pub struct ReplayConfig {
     pub polyak: f64,
     /// Widths of the critics' hidden layers.
     pub critic_hidden: Vec<usize>,
+    /// Whether the sums of those layers are brought to mean 0 and variance 1 in each row: critics that many gradient steps on few
+    /// steps of the simulator do not lead astray (Hiraoka et al. 2022).
+    pub critic_layer_norm: bool,
     /// Whether critics see the law's state, which the controller does not (Pinto et al. 2018).
     pub privileged: bool,
     /// Whether they see the episode's context.
@@ -69,11 +81,14 @@ impl Default for ReplayConfig {
             updates_per_step: 1.0,
             policy_delay: 1,
             design_start: 0.0,
+            design_search: 0,
+            forget_beyond: 0.0,
             learning_rate: 3e-4,
             critic_learning_rate: 3e-4,
             learning_rate_final: 1.0,
             polyak: 0.005,
             critic_hidden: vec![256, 256],
+            critic_layer_norm: false,
             privileged: false,
             context: false,
         }
@@ -99,6 +114,10 @@ impl Settings for ReplayConfig {
         fields.count("policy_delay", &mut self.policy_delay, 1..=100, about);
         let about = "share of the schedules that is done before the design moves";
         fields.number("design_start", &mut self.design_start, 0.0..=1.0, about);
+        let about = "steps of the simulator from one search of the design by the critics to the next; 0: it follows their slope";
+        fields.count("design_search", &mut self.design_search, 0..=MOST_ROWS, about);
+        let about = "share of its range by which a design parameter moves until the replay is emptied; 0: it is kept";
+        fields.number("forget_beyond", &mut self.forget_beyond, 0.0..=1.0, about);
         fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's, for the policy");
         fields.number("critic_learning_rate", &mut self.critic_learning_rate, RATES, "Adam's, for the critics");
         let about = "fraction of both at the end of a linear decay";
@@ -106,6 +125,8 @@ impl Settings for ReplayConfig {
         fields.number("polyak", &mut self.polyak, 1e-6..=1.0, "share that the targets follow by in a gradient step");
         let about = "widths of the critics' hidden layers";
         fields.counts("critic_hidden", &mut self.critic_hidden, MOST_LAYERS, 1..=WIDEST_LAYER, about);
+        let about = "whether sums of the critics' hidden layers are normalised in each row";
+        fields.flag("critic_layer_norm", &mut self.critic_layer_norm, about);
         let about = "whether critics see the law's state, which the controller does not";
         fields.flag("privileged", &mut self.privileged, about);
         let about = "whether critics see what an episode is about and no sensor tells";

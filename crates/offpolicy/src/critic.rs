@@ -23,11 +23,11 @@ pub(crate) struct Critics {
 
 impl Critics {
     /// Of `width` inputs; near zero everywhere at first.
-    pub(crate) fn new(width: usize, hidden: &[usize], seed: u64) -> Self {
+    pub(crate) fn new(width: usize, hidden: &[usize], layer_norm: bool, seed: u64) -> Self {
         let mut sizes = vec![width];
         sizes.extend(hidden);
         sizes.push(1);
-        let network = Mlp::new(&sizes, Activation::Relu, Activation::Identity);
+        let network = Mlp::new(&sizes, Activation::Relu, Activation::Identity).with_layer_norm(layer_norm);
         let each = [0, 1].map(|i| {
             let mut weights = stream(seed, Purpose::Critic, 0, i);
             let params = network.init(0.1, || weights.random::<f64>());

@@ -7,6 +7,7 @@ use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, share_left, stream};
 
 use crate::config::ReplayConfig;
 use crate::critic::{Critics, follow};
+use crate::design::Watch;
 use crate::replay::{Dims, Replay};
 use crate::rule::Rule;
 use crate::sample::{Sample, View};
@@ -29,16 +30,16 @@ const ROWS_PER_JOB: usize = 128;
 /// | `temperature` | of SAC: what a nat is worth, in units of the return |
 #[allow(private_bounds)] // what tells one from another is nobody else's
 pub struct OffPolicy<P: Policy, R: Rule<P>> {
-    policy: Arc<P>,
-    seed: u64,
+    pub(crate) policy: Arc<P>,
+    pub(crate) seed: u64,
     /// Times the learning rate, of design parameters.
     design_lr_scale: f64,
     view: View,
     limits: Vec<Option<(f32, f32)>>,
-    learned: Learned<R>,
-    replay: Replay,
+    pub(crate) learned: Learned<R>,
+    pub(crate) replay: Replay,
     /// Working memory.
-    sample: Sample,
+    pub(crate) sample: Sample,
     workers: Vec<Mutex<Worker<P>>>,
     gradient: Vec<f32>,
     critic_gradient: Vec<f32>,
@@ -46,18 +47,19 @@ pub struct OffPolicy<P: Policy, R: Rule<P>> {
 
 /// All that gradient steps change.
 #[derive(Clone, Debug)]
-struct Learned<R> {
+pub(crate) struct Learned<R> {
     rule: R,
-    params: Vec<f32>,
+    pub(crate) params: Vec<f32>,
     /// Those of the policy's slow copy; none where there is no such copy.
     slow: Vec<f32>,
     adam: Adam,
     critics: Critics,
     scaling: Scaling,
+    pub(crate) watch: Watch,
     /// Gradient steps that the steps of the simulator have earned and that were not taken.
     owed: f64,
     /// Gradient steps of the critics so far.
-    updates: u64,
+    pub(crate) updates: u64,
 }
 
 impl<R: Persist> Persist for Learned<R> {
@@ -68,6 +70,7 @@ impl<R: Persist> Persist for Learned<R> {
         with.part("critics", &mut self.critics)?;
         with.part("scaling", &mut self.scaling)?;
         with.part("rule", &mut self.rule)?;
+        with.part("watch", &mut self.watch)?;
         with.number("owed", &mut self.owed)?;
         with.number("updates", &mut self.updates)
     }
@@ -101,7 +104,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let dims = Dims::of(&*policy);
         let settings = rule.replay();
         let view = View::new(dims, settings.privileged, settings.context);
-        let critics = Critics::new(view.width(), &settings.critic_hidden, seed);
+        let critics = Critics::new(view.width(), &settings.critic_hidden, settings.critic_layer_norm, seed);
         let scaling = Scaling::new(dims);
         let rows = settings.batch_rows;
         let part = |at: usize| at..(at + ROWS_PER_JOB).min(rows);
@@ -120,6 +123,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
                 params,
                 critics,
                 scaling,
+                watch: Watch::default(),
                 owed: 0.0,
                 updates: 0,
             },
@@ -130,7 +134,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         }
     }
 
-    fn settings(&self) -> &ReplayConfig {
+    pub(crate) fn settings(&self) -> &ReplayConfig {
         self.learned.rule.replay()
     }
 
@@ -138,7 +142,8 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let settings = self.settings();
         let decay = share_left(settings.learning_rate_final, progress);
         let (policy, count) = (settings.learning_rate * decay, self.learned.params.len());
-        let design = if progress < settings.design_start { 0.0 } else { self.design_lr_scale };
+        let still = progress < settings.design_start || settings.design_search > 0;
+        let design = if still { 0.0 } else { self.design_lr_scale };
         let critic = (settings.critic_learning_rate * decay) as f32;
         Rates {
             policy: group_rates(self.policy.groups(), count, policy, design, 0.0),
@@ -205,7 +210,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
             sums.log_probs += log_prob;
             sums.policy_steps += 1;
             let learned = &mut self.learned;
-            learned.rule.settle(log_prob, rates.decay);
+            learned.rule.settle(log_prob, rates.decay, rates.progress);
             follow(&mut learned.slow, &learned.params, tau);
             for critic in &mut learned.critics.each {
                 follow(&mut critic.target, &critic.params, tau);
@@ -214,7 +219,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
     }
 
     /// Every worker does this once, on any thread.
-    fn run(
+    pub(crate) fn run(
         &self,
         executor: &dyn Executor,
         smoothing: &[(f32, f32)],
@@ -247,7 +252,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
     }
 
     /// A sum over the workers, in their order.
-    fn sum(&mut self, of: impl Fn(&Worker<P>) -> f64) -> f64 {
+    pub(crate) fn sum(&mut self, of: impl Fn(&Worker<P>) -> f64) -> f64 {
         self.workers.iter_mut().map(|worker| of(worker.get_mut().unwrap_or_else(PoisonError::into_inner))).sum()
     }
 
@@ -294,7 +299,7 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
         let before = self.learned.clone();
         let undo = self.replay.push(batch, &self.limits);
         let mut sums = Sums::default();
-        if self.replay.steps() >= self.settings().warmup_steps {
+        if self.learned.updates > 0 || self.replay.steps() >= self.settings().warmup_steps {
             self.learned.owed += batch.rows() as f64 * self.settings().updates_per_step;
             let rates = self.rates(progress);
             match self.learn(executor, &rates, iteration) {
@@ -307,6 +312,7 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
                 }
             }
         }
+        self.attend_design(executor, batch.rows(), progress, iteration);
         let (center, scale) = self.learned.scaling.value;
         let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
         let td_error = scale * mean(sums.squares, sums.steps).sqrt();

@@ -8,6 +8,7 @@
 
 mod config;
 mod critic;
+mod design;
 mod kind;
 mod learner;
 mod replay;

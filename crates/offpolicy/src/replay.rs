@@ -236,6 +236,11 @@ impl Replay {
         self.head = undo.head;
     }
 
+    /// All is forgotten.
+    pub(crate) fn empty(&mut self) {
+        *self = Self::new(self.dims, self.capacity);
+    }
+
     /// A step, each as likely as any other.
     ///
     /// # Panics
@@ -248,6 +253,17 @@ impl Replay {
                 return i;
             }
         }
+    }
+
+    /// The frames that episodes began with.
+    pub(crate) fn starts(&self) -> Vec<usize> {
+        let count = self.frames();
+        let begins = |&i: &usize| {
+            let before = (i + count - 1) % count;
+            // Behind the newest frame comes the oldest, which may be in the midst of its episode.
+            self.mark[before] != Mark::Step && (i != self.head % count || count < self.capacity)
+        };
+        self.step_frames().filter(begins).collect()
     }
 
     /// Where `n` steps from step `i` on lead to, or as many as its episode has left.

@@ -24,6 +24,7 @@ pub type Sac<P> = OffPolicy<P, SacRule>;
 /// | `train_temperature` | true | whether it is learned |
 /// | `temperature_learning_rate` | 3e-4 | step size of Adam for log α |
 /// | `target_entropy` | -1 | entropy that it is learned for, in nats for each command |
+/// | `target_entropy_fall` | 0 | nats that this has fallen by at the end of the training |
 #[derive(Clone, Debug, PartialEq)]
 pub struct SacConfig {
     /// What it has in common with others.
@@ -36,6 +37,8 @@ pub struct SacConfig {
     pub temperature_learning_rate: f64,
     /// H̄ for each command, in nats, of densities over [-1, 1].
     pub target_entropy: f64,
+    /// By how much H̄ falls, evenly over the training: what is explored widely at first is done firmly in the end.
+    pub target_entropy_fall: f64,
 }
 
 impl Default for SacConfig {
@@ -46,6 +49,7 @@ impl Default for SacConfig {
             train_temperature: true,
             temperature_learning_rate: 3e-4,
             target_entropy: -1.0,
+            target_entropy_fall: 0.0,
         }
     }
 }
@@ -61,6 +65,8 @@ impl Settings for SacConfig {
         fields.number("temperature_learning_rate", &mut self.temperature_learning_rate, RATES, about);
         let about = "entropy that the temperature is learned for, in nats for each command, of densities over [-1, 1]";
         fields.number("target_entropy", &mut self.target_entropy, -10.0..=0.7, about);
+        let about = "nats that this has fallen by at the end of the training, evenly";
+        fields.number("target_entropy_fall", &mut self.target_entropy_fall, 0.0..=10.0, about);
     }
 }
 
@@ -121,9 +127,10 @@ impl<P: Reparameterised> Rule<P> for SacRule {
     }
 
     /// J(log α) = -log α·(log π + H̄): the form that stays steep for small α.
-    fn settle(&mut self, log_prob: f64, decay: f64) {
+    fn settle(&mut self, log_prob: f64, decay: f64, progress: f64) {
         if self.config.train_temperature {
-            let wanted = self.config.target_entropy * self.commands as f64;
+            let each = self.config.target_entropy - self.config.target_entropy_fall * progress;
+            let wanted = each * self.commands as f64;
             let rate = (self.config.temperature_learning_rate * decay) as f32;
             self.adam.step(&mut self.log_temperature, &[-(log_prob + wanted) as f32], &[rate]);
         }

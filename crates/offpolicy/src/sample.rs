@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use hwasp_algos::BLOCK;
 use hwasp_core::{Policy, Rows, Stream};
+use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::replay::{Dims, Replay};
@@ -85,6 +86,20 @@ impl Sample {
         }
         self.next_noise.fill_with(|| StandardNormal.sample(chance));
         self.now_noise.fill_with(|| StandardNormal.sample(chance));
+    }
+
+    /// Draws moments at which episodes began, for the mean of the policy's actions there; whether there are such.
+    pub(crate) fn draw_starts(&mut self, replay: &Replay, chance: &mut Stream) -> bool {
+        let starts = replay.starts();
+        if starts.is_empty() {
+            return false;
+        }
+        for r in 0..self.count {
+            let at = starts[chance.random_range(0..starts.len())];
+            self.now.take((r, self.count), replay, at, replay.action(at));
+        }
+        self.now_noise.fill(0.0);
+        true
     }
 
     /// Shows the controller the design of now, whatever it was when a step was taken: with these parameters at the moments, and

@@ -69,7 +69,8 @@ pub(crate) struct Worker<P: Policy> {
     bound: [Option<u64>; 2],
     /// What critics see of a block, row by row.
     inputs: Vec<f32>,
-    /// Actions of a block and their cotangents, column by column.
+    /// Actions of a block as the policy wants them, within their limits, and their cotangents, column by column.
+    wanted: Vec<f32>,
     actions: Vec<f32>,
     cotangents: Vec<f32>,
     /// The least of the critics' values of a block, and what they should be.
@@ -99,6 +100,7 @@ impl<P: Policy> Worker<P> {
             critics: [0, 1].map(|i| if i < R::JUDGES { network.tape_with_inputs(BLOCK) } else { network.tape(BLOCK) }),
             bound: [None; 2],
             inputs: vec![0.0; view.width() * BLOCK],
+            wanted: actions.clone(),
             cotangents: actions.clone(),
             actions,
             least: vec![0.0; BLOCK],
@@ -198,6 +200,37 @@ impl<P: Policy> Worker<P> {
         }
     }
 
+    /// What the critics say of the policy's actions at the moments of all its rows.
+    pub(crate) fn value<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
+        step.policy.bind(step.params, &mut self.live);
+        for i in 0..R::JUDGES {
+            self.bind_critic(step, i);
+        }
+        (self.values, self.log_probs) = (0.0, 0.0);
+        for block in Sample::blocks(self.rows.clone()) {
+            self.appraise(step, &block);
+        }
+    }
+
+    /// The same for one block: what the policy would do is left in `wanted`, what of it reaches the world in the critics' inputs.
+    fn appraise<R: Rule<P>>(&mut self, step: &Step<'_, P, R>, block: &Range<usize>) {
+        let (rows, sample) = (block.len(), step.sample);
+        let noise = sample.now_noise.get(block.start..).unwrap_or(&[]);
+        let (actions, log_prob) = R::act(step.policy, &sample.rows(&sample.now, block), noise, &mut self.live);
+        self.wanted.copy_from_slice(actions);
+        self.actions.copy_from_slice(actions);
+        self.log_probs += log_prob.unwrap_or(&[]).iter().take(rows).map(|&p| f64::from(p)).sum::<f64>();
+        step.limit(&mut self.actions, rows);
+        let inputs = &mut self.inputs[..rows * step.view.width()];
+        step.view.fill(sample, &sample.now, block, step.scaling, inputs);
+        step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
+        for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {
+            step.critics.network.forward(inputs, rows, tape);
+            take_least(i, tape, &mut self.least[..rows], &mut self.judge);
+        }
+        self.values += self.least[..rows].iter().map(|&value| f64::from(value)).sum::<f64>();
+    }
+
     /// The gradient of the mean of α·log π(a|s) - min over judges of Q(s, a) by the policy's parameters, where a is the policy's,
     /// left on its tape: through critics, law and controller (Silver et al. 2014, eq. 9; Haarnoja et al. 2018, eq. 9).
     pub(crate) fn improve<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
@@ -214,20 +247,8 @@ impl<P: Policy> Worker<P> {
         let share = 1.0 / step.rows as f32;
         for block in Sample::blocks(self.rows.clone()) {
             let rows = block.len();
-            let moments = sample.rows(&sample.now, &block);
-            let noise = sample.now_noise.get(block.start..).unwrap_or(&[]);
-            let (actions, log_prob) = R::act(step.policy, &moments, noise, &mut self.live);
-            self.actions.copy_from_slice(actions);
-            self.log_probs += log_prob.unwrap_or(&[]).iter().take(rows).map(|&p| f64::from(p)).sum::<f64>();
-            step.limit(&mut self.actions, rows);
-            let inputs = &mut self.inputs[..rows * width];
-            step.view.fill(sample, &sample.now, &block, step.scaling, inputs);
-            step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
-            for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {
-                network.forward(inputs, rows, tape);
-                take_least(i, tape, &mut self.least[..rows], &mut self.judge);
-            }
-            self.values += self.least[..rows].iter().map(|&value| f64::from(value)).sum::<f64>();
+            self.appraise(step, &block);
+            let inputs = &self.inputs[..rows * width];
             self.cotangents.fill(0.0);
             for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {
                 for (c, &judge) in self.value_cotangent[..rows].iter_mut().zip(&self.judge) {
@@ -242,9 +263,10 @@ impl<P: Policy> Worker<P> {
                 }
             }
             // Beyond a limit nothing changes on the way out; the way back is open.
+            let moments = sample.rows(&sample.now, &block);
             for (a, limits) in step.limits.iter().enumerate() {
                 let Some((lo, hi)) = *limits else { continue };
-                for (c, &action) in self.cotangents[a * BLOCK..][..rows].iter_mut().zip(&actions[a * BLOCK..]) {
+                for (c, &action) in self.cotangents[a * BLOCK..][..rows].iter_mut().zip(&self.wanted[a * BLOCK..]) {
                     if (action > hi && *c < 0.0) || (action < lo && *c > 0.0) {
                         *c = 0.0;
                     }

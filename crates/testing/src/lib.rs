@@ -40,6 +40,8 @@ pub const OFF_POLICY: Settings = &[
     ("td3.updates_per_step", "0.03"),
     ("td3.n_step", "2"),
     ("td3.privileged", "true"),
+    ("td3.critic_layer_norm", "true"),
+    ("td3.forget_beyond", "0.002"),
 ];
 
 /// The same with a spread of its commands that it learns.
@@ -52,6 +54,7 @@ pub const SOFT: Settings = &[
     ("sac.updates_per_step", "0.03"),
     ("sac.policy_delay", "2"),
     ("sac.context", "true"),
+    ("sac.design_search", "2000"),
 ];
 
 /// The last two fifths polish the controller.

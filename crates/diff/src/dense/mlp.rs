@@ -28,6 +28,7 @@ pub struct Mlp {
     sizes: Vec<usize>,
     hidden: Activation,
     output: Activation,
+    layer_norm: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -38,6 +39,7 @@ struct Layer {
     at: usize,
     activation: Activation,
     narrow: bool,
+    normal: bool,
 }
 
 impl Layer {
@@ -64,6 +66,9 @@ struct LayerTape<F> {
     output: Aligned<F>,
     /// Their tangents.
     tangent: Aligned<F>,
+    /// Sums that were normalised `[rows × stride]`, and what each row was multiplied by; empty where none are.
+    normal: Aligned<F>,
+    factors: Vec<F>,
     /// Padded outputs, the row stride of `output`; the true number in a narrow layer.
     stride: usize,
     layer: Shape,
@@ -111,7 +116,14 @@ impl Mlp {
     /// If there are fewer than two sizes or one is zero; experiment files are checked before.
     pub fn new(sizes: &[usize], hidden: Activation, output: Activation) -> Self {
         assert!(sizes.len() >= 2 && sizes.iter().all(|&n| n > 0), "not the sizes of a perceptron: {sizes:?}");
-        Self { sizes: sizes.to_vec(), hidden, output }
+        Self { sizes: sizes.to_vec(), hidden, output, layer_norm: false }
+    }
+
+    /// The same with the sums of each hidden layer brought to mean 0 and variance 1 in each row, before their activation: layer
+    /// normalisation (Ba, Kiros and Hinton 2016, eq. 3) without gains and shifts of its own.
+    #[must_use]
+    pub fn with_layer_norm(self, layer_norm: bool) -> Self {
+        Self { layer_norm, ..self }
     }
 
     /// Inputs, hidden layers, outputs.
@@ -147,7 +159,8 @@ impl Mlp {
             *next += (w[0] + 1) * w[1];
             let activation = if l + 1 == count { self.output } else { self.hidden };
             let narrow = l > 0 && l + 1 == count && w[1] <= NARROW;
-            Some(Layer { inputs: w[0], outputs: w[1], at, activation, narrow })
+            let normal = self.layer_norm && l + 1 < count;
+            Some(Layer { inputs: w[0], outputs: w[1], at, activation, narrow, normal })
         })
     }
 
@@ -208,6 +221,8 @@ impl Mlp {
                     bias_tangent: bias.clone(),
                     bias,
                     tangent: output.clone(),
+                    normal: Aligned::zeroed(if l.normal { output.len() } else { 0 }),
+                    factors: vec![F::ZERO; if l.normal { max_rows } else { 0 }],
                     output,
                     stride,
                     layer: Shape { inputs: l.inputs, outputs: l.outputs, activation: l.activation, narrow: l.narrow },

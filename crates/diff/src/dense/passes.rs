@@ -42,6 +42,47 @@ pub(super) fn differentiate<F: Float>(activation: Activation, h: &[F], d: &mut [
     }
 }
 
+/// z ← (z - mean)/sqrt(variance + ε) in each row, kept in `normal` with the factor of each row; nothing where `normal` is empty.
+#[inline(always)]
+pub(super) fn normalize<F: Float>(z: &mut [F], (stride, width): (usize, usize), normal: &mut [F], factors: &mut [F]) {
+    if normal.is_empty() {
+        return;
+    }
+    let share = F::from_f64(1.0 / width as f64);
+    for (r, z) in z.chunks_exact_mut(stride).enumerate() {
+        let z = &mut z[..width];
+        let mean = total(z) * share;
+        for z in &mut *z {
+            *z -= mean;
+        }
+        let variance = dot(z, z) * share;
+        let factor = F::ONE / (variance + F::from_f64(1e-5)).sqrt();
+        for z in &mut *z {
+            *z *= factor;
+        }
+        normal[r * stride..][..width].copy_from_slice(z);
+        factors[r] = factor;
+    }
+}
+
+/// d ← dᵀ·∂normal/∂z, which is symmetric, so that tangents go forward by it, too.
+#[inline(always)]
+pub(super) fn differentiate_normal<F: Float>(
+    d: &mut [F],
+    (stride, width): (usize, usize),
+    normal: &[F],
+    factors: &[F],
+) {
+    let share = F::from_f64(1.0 / width as f64);
+    for ((d, normal), &factor) in d.chunks_exact_mut(stride).zip(normal.chunks_exact(stride)).zip(factors) {
+        let (d, normal) = (&mut d[..width], &normal[..width]);
+        let (mean, along) = (total(d) * share, dot(d, normal) * share);
+        for (d, &normal) in d.iter_mut().zip(normal) {
+            *d = factor * (*d - mean - normal * along);
+        }
+    }
+}
+
 /// `sum[j] += Σ_r x[r][j]` over rows of `sum.len()` numbers, a multiple of eight.
 #[inline(always)]
 pub(super) fn add_rows<F: Float>(x: &[F], sum: &mut [F]) {
@@ -85,6 +126,22 @@ pub(super) fn dot<F: Float>(x: &[F], y: &[F]) -> F {
     }
     for (l, (&x, &y)) in rest.enumerate() {
         sum[l] = x.mul_add(y, sum[l]);
+    }
+    tree(sum)
+}
+
+/// The sum of numbers, in a fixed order.
+#[inline(always)]
+fn total<F: Float>(x: &[F]) -> F {
+    let mut sum = [F::ZERO; PARALLEL];
+    let xs = x.chunks_exact(PARALLEL);
+    for (l, &x) in xs.remainder().iter().enumerate() {
+        sum[l] = x;
+    }
+    for x in xs {
+        for l in 0..PARALLEL {
+            sum[l] += x[l];
+        }
     }
     tree(sum)
 }

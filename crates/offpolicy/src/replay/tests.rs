@@ -56,6 +56,18 @@ fn n_steps_by_hand() {
     assert_eq!(replay.returns(0.5), returns);
 }
 
+/// Episodes of 3 and 2 steps in a ring of 9: the third writes over the first one's beginning, whose rest has no start.
+#[test]
+fn starts_are_where_episodes_began() {
+    let mut replay = Replay::new(DIMS, 9);
+    replay.push(&batch(1, &[(3, End::Truncated), (2, End::Terminated)]), &[None]);
+    assert_eq!(replay.starts(), [0, 4]);
+    replay.push(&batch(6, &[(3, End::Truncated)]), &[None]);
+    assert_eq!(replay.starts(), [4, 7]);
+    replay.empty();
+    assert_eq!((replay.starts().len(), replay.steps()), (0, 0));
+}
+
 /// The world saw the command at its limit, and the critic has to see what the world saw.
 #[test]
 fn actions_are_kept_within_their_limits() {

@@ -137,7 +137,7 @@ impl<R: Rule<HardwarePolicy>> Scene<R> {
         let dims = Dims::of(&policy);
         let view = View::new(dims, false, false);
         let (params, sample) = (policy.init(5, 1.0), sample(&policy, R::drawn(&policy)));
-        let (critics, scaling) = (Critics::new(view.width(), critic_hidden, 5), Scaling::new(dims));
+        let (critics, scaling) = (Critics::new(view.width(), critic_hidden, false, 5), Scaling::new(dims));
         Self { rule, smoothing, limits: policy.action_limits(), params, critics, sample, scaling, view, policy }
     }
 
@@ -359,7 +359,7 @@ fn the_temperature_follows_entropy() {
     for (log_prob, grows) in [(2.0, true), (0.5, false)] {
         let mut rule = SacRule::new(SacConfig::default(), 1);
         let before = Rule::<HardwarePolicy>::temperature(&rule);
-        Rule::<HardwarePolicy>::settle(&mut rule, log_prob, 1.0);
+        Rule::<HardwarePolicy>::settle(&mut rule, log_prob, 1.0, 0.0);
         let after = Rule::<HardwarePolicy>::temperature(&rule);
         assert_eq!(after > before, grows);
         assert!(((after / before).ln().abs() - 3e-4).abs() < 1e-6, "Adam's first step is its rate: {before}, {after}");

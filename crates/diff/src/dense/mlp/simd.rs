@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 use super::MlpTape;
 use crate::Float;
 use crate::dense::kernels::{Onto, product, product_transposed};
-use crate::dense::passes::{activate, add_rows, differentiate, dot, sum_column};
+use crate::dense::passes::{activate, add_rows, differentiate, differentiate_normal, dot, normalize, sum_column};
 
 /// One block of rows through all layers.
 pub(super) struct Forward<'a, F> {
@@ -35,6 +35,7 @@ impl<F: Float> WithSimd for Forward<'_, F> {
                 let size = (rows, shape.inputs, t.stride);
                 product::<F, S>(simd, size, x, stride, &t.weights, Onto::Row(&t.bias), output);
             }
+            normalize(output, (t.stride, shape.outputs), &mut t.normal, &mut t.factors);
             activate(shape.activation, output);
             (x, stride) = (&t.output[..rows * t.stride], t.stride);
         }
@@ -79,6 +80,7 @@ impl<F: Float> WithSimd for Backward<'_, F> {
             };
             let d = &mut current[..rows * t.stride];
             differentiate(shape.activation, &t.output[..rows * t.stride], d);
+            differentiate_normal(d, (t.stride, shape.outputs), &t.normal, &t.factors);
             let sums = &mut t.weights_cotangent;
             if shape.narrow {
                 if self.weights {
@@ -151,6 +153,7 @@ impl<F: Float> WithSimd for Tangent<'_, F> {
                     product::<F, S>(simd, size, dx, stride, &t.weights, Onto::Result, d);
                 }
             }
+            differentiate_normal(d, (t.stride, shape.outputs), &t.normal, &t.factors);
             differentiate(shape.activation, &t.output[..rows * t.stride], d);
         }
     }

@@ -90,7 +90,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--kills", type=int, default=100, help="of mass-spring trainings: PPO, CMA-ES, cmaes-rl")
-    parser.add_argument("--grasp-kills", type=int, default=10, help="of z-grasp trainings: TRPO")
+    parser.add_argument("--grasp-kills", type=int, default=10, help="of z-grasp trainings: PPO")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
     asked = parser.parse_args()
     asked.folder.mkdir(parents=True, exist_ok=True)

@@ -20,7 +20,7 @@ def training(turns, iterations):
 
     shares = sorted(one["share"] for one in found)
     return median("share"), [
-        "| training of z-grasp on 2 threads, medians | |",
+        "| training of z-grasp by TRPO on 2 threads, medians | |",
         "|---|---|",
         f"| steps per second, everything included | {median('training'):,.0f} |",
         f"| the same physics alone | {median('physics'):,.0f} |",

@@ -1,4 +1,4 @@
-//! How much of the time of a training of z-grasp the simulator takes, and where the rest goes. The last line says it in JSON.
+//! How much of the time of a training of z-grasp by TRPO the simulator takes, and where the rest goes. The last line says it in JSON.
 //!
 //!     grasp_throughput [THREADS [ITERATIONS]]        default: 2 threads, 2 iterations of 20,000 steps
 //!
@@ -35,7 +35,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
     let threads = arguments.next().transpose()?.unwrap_or(2);
     let iterations = arguments.next().transpose()?.unwrap_or(2);
-    let settings = [("train.env_steps", (20_000 * iterations).to_string())];
+    let settings = [
+        ("learner.algorithm", "trpo".to_owned()),
+        ("train.episodes_per_iteration", "40".to_owned()),
+        ("train.env_steps", (20_000 * iterations).to_string()),
+    ];
     let catalogue = hwasp_builtin::catalogue();
     let layers =
         settings.iter().fold(load("z-grasp", &catalogue)?, |layers, (key, value)| layers.with_override(key, value));

@@ -60,7 +60,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let threads = arguments.next().map_or(Ok(1), |count| count.parse::<usize>())?;
     let share = arguments.next().unwrap_or_else(|| "1.0".to_owned());
     // Ten products, however small the residual.
-    let settings = [("trpo.fisher_rows", share.as_str()), ("trpo.cg_iterations", "10"), ("trpo.cg_tolerance", "0.0")];
+    let settings = [
+        ("learner.algorithm", "trpo"),
+        ("train.episodes_per_iteration", "40"),
+        ("trpo.fisher_rows", share.as_str()),
+        ("trpo.cg_iterations", "10"),
+        ("trpo.cg_tolerance", "0.0"),
+    ];
     let catalogue = hwasp_builtin::catalogue();
     let layers =
         settings.iter().fold(load("z-grasp", &catalogue)?, |layers, (key, value)| layers.with_override(key, value));

@@ -20,6 +20,7 @@ fn assembly(experiment: &str, method: &str, settings: &[(&str, &str)]) -> Assemb
         ("train.episodes_per_iteration", "8"),
         ("train.env_steps", "960"),
         ("train.evaluation_episodes", "8"),
+        ("ppo.minibatch_rows", "60"),
         ("baseline.minibatch_rows", "60"),
     ];
     let layers = hwasp_testing::layers(experiment);
@@ -66,6 +67,7 @@ fn a_short_training_improves_the_return() {
         ("train.env_steps", "24000"),
         ("train.episodes_per_iteration", "20"),
         ("noise.command", "0.5"),
+        ("learner.algorithm", "trpo"),
         ("trpo.max_kl", "0.05"),
         ("trpo.fisher_rows", "1.0"),
     ];

@@ -37,6 +37,7 @@ fn run() -> (Assembly, Vec<f32>) {
         ("train.episodes_per_iteration", "8"),
         ("train.env_steps", "960"),
         ("train.evaluation_episodes", "2"),
+        ("ppo.minibatch_rows", "60"),
         ("baseline.minibatch_rows", "60"),
     ];
     let layers =

@@ -42,7 +42,7 @@ fn tolerances_and_parts_that_cannot_be() {
 fn parts_of_a_hand() {
     let sandbox = Sandbox::new("parts-hand");
     let small = "--set task.horizon=40 --set train.episode_steps=40 --set train.episodes_per_iteration=4 --set \
-                 controller.hidden=[8] --set baseline.minibatch_rows=40 --set train.evaluation_episodes=2 --set design.logit_half_width=0.5";
+                 controller.hidden=[8] --set ppo.minibatch_rows=40 --set baseline.minibatch_rows=40 --set train.evaluation_episodes=2 --set design.logit_half_width=0.5";
     let trained = sandbox.run(&format!("train z-grasp --env-steps 160 {small} --quiet --out hand"));
     assert!(trained.status.success(), "{}", String::from_utf8_lossy(&trained.stderr));
     insta::assert_snapshot!(sandbox.refused(&["parts hand --fine-tune 100", "parts hand --bench axle=\"12mm\""]));

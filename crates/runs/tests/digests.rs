@@ -52,7 +52,7 @@ const CASES: [Case; 5] = [
         method: None,
         env_steps: "40000",
         may_vary: true,
-        digest: "2d2db7fea7200c288e651b288259ba57dad18e4362a22a637a0069e334f230d8",
+        digest: "92101380e55d0d862d61a727e4e15ed52e60c113a829e0a02f9cb0da0fbe5f0c",
     },
     Case {
         experiment: "reach",

@@ -66,8 +66,10 @@ fn a_short_training_improves_the_return() {
     let longer = [
         ("train.env_steps", "24000"),
         ("train.episodes_per_iteration", "20"),
-        ("noise.command", "0.5"),
         ("learner.algorithm", "trpo"),
+        ("noise.command", "0.5"),
+        ("noise.anneal", "[0.2, 0.7]"),
+        ("baseline.context", "false"),
         ("trpo.max_kl", "0.05"),
         ("trpo.fisher_rows", "1.0"),
     ];

@@ -7,11 +7,11 @@ use hwasp_core::{Batch, Executor, Policy, Purpose, Stream, share_left, stream};
 
 use crate::config::ReplayConfig;
 use crate::critic::{Critics, follow};
-use crate::design::Watch;
 use crate::replay::{Dims, Replay};
 use crate::rule::Rule;
 use crate::sample::{Sample, View};
 use crate::scaling::Scaling;
+use crate::watch::Watch;
 use crate::worker::{Step, Worker};
 
 /// Rows of a gradient step that are a job of their own.

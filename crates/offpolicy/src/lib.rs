@@ -17,6 +17,7 @@ mod sac;
 mod sample;
 mod scaling;
 mod td3;
+mod watch;
 mod worker;
 
 pub use config::ReplayConfig;

@@ -90,8 +90,6 @@ struct Sums {
 struct Rates {
     policy: Vec<f32>,
     critic: Vec<f32>,
-    /// What is left of rates at the start.
-    decay: f64,
     /// The share of all schedules that is done.
     progress: f64,
 }
@@ -148,7 +146,6 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         Rates {
             policy: group_rates(self.policy.groups(), count, policy, design, 0.0),
             critic: vec![critic; self.critic_gradient.len()],
-            decay,
             progress,
         }
     }
@@ -210,7 +207,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
             sums.log_probs += log_prob;
             sums.policy_steps += 1;
             let learned = &mut self.learned;
-            learned.rule.settle(log_prob, rates.decay, rates.progress);
+            learned.rule.settle(log_prob, rates.progress);
             follow(&mut learned.slow, &learned.params, tau);
             for critic in &mut learned.critics.each {
                 follow(&mut critic.target, &critic.params, tau);

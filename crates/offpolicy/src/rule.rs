@@ -35,9 +35,9 @@ pub(crate) trait Rule<P: Policy>: Persist + Clone + Send + Sync {
     /// What a nat of entropy is worth, in the unit of the critics.
     fn temperature(&self) -> f32;
 
-    /// A gradient step of the policy was taken, on actions of this mean log-probability. `decay` is what is left of learning rates
-    /// at `progress` of the training.
-    fn settle(&mut self, log_prob: f64, decay: f64, progress: f64);
+    /// A gradient step of the policy was taken, on actions of this mean log-probability. The training is at
+    /// `progress`.
+    fn settle(&mut self, log_prob: f64, progress: f64);
 
     /// What it tells beside the rest, at the end of [`METRICS`](Self::METRICS): `log_prob` is the mean over the update.
     fn tell(&self, log_prob: f64, value_scale: f64) -> Vec<f64>;

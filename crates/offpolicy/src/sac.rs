@@ -1,7 +1,7 @@
 //! Soft actor-critic.
 
 use hwasp_algos::{Adam, AdamConfig, Exchange, Persist, RATES, StateError};
-use hwasp_core::{Reparameterised, Rows};
+use hwasp_core::{Reparameterised, Rows, share_left};
 use hwasp_settings::{Fields, Settings};
 
 use crate::config::ReplayConfig;
@@ -127,10 +127,11 @@ impl<P: Reparameterised> Rule<P> for SacRule {
     }
 
     /// J(log α) = -log α·(log π + H̄): the form that stays steep for small α.
-    fn settle(&mut self, log_prob: f64, decay: f64, progress: f64) {
+    fn settle(&mut self, log_prob: f64, progress: f64) {
         if self.config.train_temperature {
             let each = self.config.target_entropy - self.config.target_entropy_fall * progress;
             let wanted = each * self.commands as f64;
+            let decay = share_left(self.config.replay.learning_rate_final, progress);
             let rate = (self.config.temperature_learning_rate * decay) as f32;
             self.adam.step(&mut self.log_temperature, &[-(log_prob + wanted) as f32], &[rate]);
         }

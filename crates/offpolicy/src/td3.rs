@@ -93,7 +93,7 @@ impl<P: Policy> Rule<P> for Td3Config {
         0.0
     }
 
-    fn settle(&mut self, _: f64, _: f64, _: f64) {}
+    fn settle(&mut self, _: f64, _: f64) {}
 
     fn tell(&self, _: f64, _: f64) -> Vec<f64> {
         Vec::new()

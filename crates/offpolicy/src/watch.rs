@@ -1,6 +1,7 @@
 //! When something is due that befalls the design beside the critics' slope.
 
 use hwasp_algos::{Exchange, Persist, StateError};
+use hwasp_diff::Scalar;
 
 /// What is remembered of the design.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +15,7 @@ pub(crate) struct Watch {
 impl Watch {
     /// Whether one of the stand-ins has moved by more than this share of its range since this was last so.
     pub(crate) fn moved(&mut self, design: &[f32], most: f64) -> bool {
-        let share = |u: f32| 1.0 / (1.0 + f64::from(-u).exp());
+        let share = |u: f32| f64::from(u).sigmoid();
         let beyond = self.then.iter().zip(design).any(|(&then, &now)| (share(now) - share(then)).abs() > most);
         if beyond || self.then.is_empty() {
             self.then = design.to_vec();

@@ -359,7 +359,7 @@ fn the_temperature_follows_entropy() {
     for (log_prob, grows) in [(2.0, true), (0.5, false)] {
         let mut rule = SacRule::new(SacConfig::default(), 1);
         let before = Rule::<HardwarePolicy>::temperature(&rule);
-        Rule::<HardwarePolicy>::settle(&mut rule, log_prob, 1.0, 0.0);
+        Rule::<HardwarePolicy>::settle(&mut rule, log_prob, 0.0);
         let after = Rule::<HardwarePolicy>::temperature(&rule);
         assert_eq!(after > before, grows);
         assert!(((after / before).ln().abs() - 3e-4).abs() < 1e-6, "Adam's first step is its rate: {before}, {after}");

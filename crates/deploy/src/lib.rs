@@ -1,0 +1,2 @@
+//! A trained controller on arm and hand.
+#![forbid(unsafe_code)]

@@ -1,0 +1,10 @@
+//! Drivers of the bench. What runs a robot sees an [`Arm`] and a [`Motor`]; who speaks to them is its own concern.
+#![forbid(unsafe_code)]
+
+mod arm;
+mod error;
+mod motor;
+
+pub use arm::{Arm, ArmMode, ArmState, Pose, Safety};
+pub use error::DriverError;
+pub use motor::{Motor, MotorState};

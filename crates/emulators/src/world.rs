@@ -1,0 +1,34 @@
+//! What stands behind the emulators: how the spool turns while the arm carries the hand about.
+
+use hwasp_drivers::Pose;
+
+/// What the motor does to the spool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpoolDrive {
+    /// It turns freely.
+    Free,
+    /// It goes to a position.
+    Position {
+        /// rad.
+        goal: f64,
+        /// The most current that it takes for it, A.
+        current: f64,
+    },
+}
+
+/// What the spool does to the motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpoolState {
+    /// rad.
+    pub position: f64,
+    /// rad/s.
+    pub velocity: f64,
+    /// A.
+    pub current: f64,
+}
+
+/// The world of a bench, one millisecond after the other.
+pub trait World: Send {
+    /// Goes on by 1 ms with the tool at `tool`, in the arm's base, and the spool so driven.
+    fn step(&mut self, tool: &Pose, spool: SpoolDrive) -> SpoolState;
+}

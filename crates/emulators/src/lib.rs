@@ -2,7 +2,9 @@
 #![forbid(unsafe_code)]
 
 pub mod dynamixel;
+pub mod hand;
 mod world;
 
 pub use dynamixel::DynamixelEmulator;
+pub use hand::HandWorld;
 pub use world::{FreeSpool, STEP, SpoolDrive, SpoolState, World};

@@ -42,7 +42,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn the_palm_is_where_the_tool_is() {
-    let world = world(ShapeKind::Box, Carry::Rigid, Planted::default());
+    let world = world(ShapeKind::Box, Carry::Stiff, Planted::default());
     for place in [[0.0, 0.0, 0.3], [0.1, -0.05, 0.2]] {
         assert!(distance(&world.palm_at(&tool(place)), &place) < 1e-12);
     }
@@ -61,10 +61,10 @@ fn with_nothing_planted_the_physics_are_those_of_training() {
         let mut world = world(kind, Carry::Compliant, Planted::default());
         let (object, start) = world.drawn(3, 4);
         assert_eq!((&object, start), (robot.plant().object(), robot.plant().palm()));
-        world.put(object).unwrap();
+        world.put(object, &tool(start)).unwrap();
         let (mut script, mut palm, mut travel, mut largest) = (Script::default(), start, 0.0, [0.0_f64; 4]);
         script.start(robot.plant());
-        for step in 0..500 {
+        for _ in 0..500 {
             let command = script.act(robot.plant(), &robot, most);
             robot.step(&[0.0; 7], &command);
             palm[2] += command[0];
@@ -80,15 +80,11 @@ fn with_nothing_planted_the_physics_are_those_of_training() {
             let plant = robot.plant();
             let joints = hwasp_tasks::hand::names::JOINTS
                 .map(|name| plant.simulation().qpos()[plant.simulation().joint(name).unwrap().qpos.start]);
-            // Once something slips the last bits of a transformation grow; until it is lifted they do not.
-            if step < 150 {
-                largest[0] = largest[0].max(distance(&seen.palm, &plant.palm()));
-                largest[1] = largest[1].max(distance(&seen.joints, &joints));
-                largest[2] = largest[2].max(distance(&seen.object_pose[..3], &plant.object_position()));
-                largest[3] = largest[3].max((spool.current * motor.torque_constant - plant.motor_torque()).abs());
-            }
+            largest[0] = largest[0].max(distance(&seen.palm, &plant.palm()));
+            largest[1] = largest[1].max(distance(&seen.joints, &joints));
+            largest[2] = largest[2].max(distance(&seen.object_pose[..3], &plant.object_position()));
+            largest[3] = largest[3].max((spool.current * motor.torque_constant - plant.motor_torque()).abs());
         }
-        println!("{kind:?}: {largest:?}");
         assert!(largest.iter().all(|off| *off < 1e-6), "{kind:?}: {largest:?}");
         assert!(robot.outcome().unwrap().success && world.look().success, "{kind:?}");
     }
@@ -96,21 +92,24 @@ fn with_nothing_planted_the_physics_are_those_of_training() {
 
 /// Down, wind, lift, at what a bench allows: 0.1 m/s and 20 mm of tendon a second. Returns the world and the most current.
 fn grasp(kind: ShapeKind, planted: Planted) -> (HandWorld, f64) {
-    let mut world = world(kind, Carry::Rigid, planted);
+    let mut world = world(kind, Carry::Stiff, planted);
     let (object, mut palm) = world.drawn(0, 7);
-    let top = object.bounding_box()[2];
-    world.put(object).unwrap();
+    let low = (object.bounding_box()[2] + 0.005).max(0.1);
+    world.put(object, &tool(palm)).unwrap();
     let radius = TransmissionDescription::default().spool_radius;
-    let (mut wound, mut most) = (0.0_f64, 0.0_f64);
+    let (mut wound, mut most, mut lifted, mut current) = (0.0_f64, 0.0_f64, None, 0.0);
     for ms in 0..7000 {
-        let low = (top + 0.005).max(0.1);
-        let height = if ms < 4500 { low } else { low + 0.17 };
+        let height = if lifted.is_some() { low + 0.17 } else { low };
         palm[2] += (height - palm[2]).clamp(-1e-4, 1e-4);
-        if palm[2] - low < 1e-9 {
+        if (palm[2] - low < 1e-9 || lifted.is_some()) && current < 0.999 {
             wound = (wound + 2e-5).min(0.045);
         }
+        if lifted.is_none() && current > 0.97 {
+            lifted = Some(ms);
+        }
         let drive = SpoolDrive::Position { goal: wound / radius + planted.zero, current: 1.0 };
-        most = most.max(world.step(&tool(palm), drive).current);
+        current = world.step(&tool(palm), drive).current;
+        most = most.max(current);
     }
     (world, most)
 }
@@ -141,7 +140,7 @@ fn what_is_planted_is_there() {
         let seen = world.look();
         assert!((most - 1.0).abs() < 1e-9, "{planted:?}: {most} A");
         // What the object does while it is lifted can pull by as much more as friction holds.
-        let held = tension - 1e-6..=tension + 2.0 * planted.friction / 0.008 + 1e-6;
+        let held = 0.99 * tension..=tension + 2.0 * planted.friction / 0.008 + 1e-6;
         assert!(held.contains(&seen.tension), "{planted:?}: {} N is not {held:?}", seen.tension);
         assert!(seen.clearance > clearance && seen.success == (clearance > 0.0), "{planted:?}: {seen:?}");
     }
@@ -151,7 +150,7 @@ fn what_is_planted_is_there() {
 #[test]
 fn slack_is_wound_first() {
     let onset = |slack: f64| {
-        let mut world = world(ShapeKind::Sphere, Carry::Rigid, Planted { slack, ..Planted::default() });
+        let mut world = world(ShapeKind::Sphere, Carry::Stiff, Planted { slack, ..Planted::default() });
         let high = tool([0.0, 0.0, 0.4]);
         (0..8000)
             .map(|ms| 1e-6 * f64::from(ms))
@@ -169,7 +168,7 @@ fn what_cannot_be_planted_is_named() {
         design: SEARCHED,
         base: Pose::default(),
         palm: [0.0; 3],
-        carry: Carry::Rigid,
+        carry: Carry::Stiff,
         planted,
     };
     let error = HandWorld::new(settings).unwrap_err();

@@ -64,7 +64,7 @@ fn ticks_and_signs() {
     motor.torque(true).unwrap();
     // -131073 is FF FF FD FF; -3 is FD FF FF FF; a speed and a current of -1 before 0xFD are FF FF FF FF FF FF FD.
     for (ticks, speed, current) in
-        [(-131_073, 0, 0), (-3, -1, -1), (253, -1, -1), (-771, -1, -1), (65_533, -1, 200), (1_048_570, 350, -446)]
+        [(-131_073_i32, 0, 0), (-3, -1, -1), (253, -1, -1), (-771, -1, -1), (65_533, -1, 200), (1_048_570, 350, -446)]
     {
         let told = SpoolState {
             position: TICK * f64::from(ticks),

@@ -169,15 +169,13 @@ impl Memory {
             Access::Read => Err(Refusal::Access),
             Access::Between(least, most) if !(least..=most).contains(&value) => Err(Refusal::Range),
             Access::Between(..) if *register == table::OPERATING_MODE && !MODES.contains(&value) => Err(Refusal::Range),
-            Access::Between(..) => Ok(()),
             Access::Within(limit) if value.abs() > after.get(limit) => Err(Refusal::Limit),
-            Access::Within(_) => Ok(()),
             Access::Position if after.get(&table::OPERATING_MODE) == POSITION_MODE => {
                 let range = after.get(&table::MIN_POSITION)..=after.get(&table::MAX_POSITION);
                 if range.contains(&value) { Ok(()) } else { Err(Refusal::Limit) }
             }
             Access::Position if value.abs() > FARTHEST => Err(Refusal::Range),
-            Access::Position => Ok(()),
+            Access::Between(..) | Access::Within(_) | Access::Position => Ok(()),
         }
     }
 }

@@ -23,12 +23,16 @@ const LOOK: usize = 10;
 /// How the palm hangs on the tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Carry {
-    /// It is bolted to an arm that does not yield.
+    /// It is bolted to an arm: 160 N/mm, critically damped, so that it is 5 ms late. As stiff as steps of 1 ms allow; the order
+    /// of magnitude is that of an arm under position control.
     #[default]
-    Rigid,
-    /// By the compliant control with which controllers are trained: the tool is what the palm is sent to.
+    Stiff,
+    /// By the compliant control with which controllers are trained, 2.5 N/mm.
     Compliant,
 }
+
+/// Stiffness, N/m, damping, N·s/m, and most force, N, of a palm that is bolted to an arm and weighs 1 kg.
+const STIFF: [f64; 3] = [1.6e5, 800.0, 2000.0];
 
 /// A hand on a bench.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +130,10 @@ impl HandWorld {
         if let Some(stiffness) = settings.planted.tendon_stiffness {
             built.transmission.tendon_stiffness = stiffness;
         }
+        if settings.carry == Carry::Stiff {
+            let palm = &mut built.palm;
+            [palm.position_gain, palm.velocity_gain, palm.force_limit] = STIFF;
+        }
         let (object, palm) = draw(&grasp, &settings.design, 0, 0);
         let mut hand = CarriedHand::new(&built, &settings.design)?;
         hand.start(object.clone(), palm)?;
@@ -150,15 +158,15 @@ impl HandWorld {
         draw(&self.grasp, &self.settings.design, seed, index)
     }
 
-    /// Puts an object on the floor instead of the one that is there, and opens the hand.
+    /// Puts an object on the floor instead of the one that is there, and opens the hand, whose palm is at the tool.
     ///
     /// # Errors
     /// Where the engine does not take it.
-    pub fn put(&mut self, object: Object) -> Result<(), EditError> {
-        self.hand.start(object.clone(), self.hand.palm())?;
+    pub fn put(&mut self, object: Object, tool: &Pose) -> Result<(), EditError> {
+        self.hand.start(object.clone(), self.palm_at(tool))?;
         self.object = object;
         self.hold.start();
-        (self.steps, self.fresh, self.fault) = (0, true, None);
+        (self.steps, self.fresh, self.fault) = (0, false, None);
         Ok(())
     }
 
@@ -190,10 +198,7 @@ impl HandWorld {
             // An object that the engine took it takes again.
             let _started = self.hand.start(self.object.clone(), palm);
         }
-        match self.settings.carry {
-            Carry::Rigid => self.hand.carry(palm),
-            Carry::Compliant => self.hand.aim(palm),
-        }
+        self.hand.carry(palm);
         self.hand.wind(self.spool.wound - self.settings.planted.slack);
         self.hand.step()?;
         self.steps += 1;

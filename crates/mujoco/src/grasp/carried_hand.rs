@@ -14,14 +14,8 @@ pub struct CarriedHand {
     sim: Simulation,
     places: Places,
     tendons: [TendonId; 3],
-    /// The palm's degrees of freedom.
-    palm_freedoms: [usize; 3],
     palm_targets: [usize; 3],
     winches: [usize; 3],
-    /// By how much the palm's control is ahead of it per m/s, so that it pulls with nothing at an even speed, s.
-    lead: f64,
-    /// Where the palm was last carried, m.
-    carried: Option<[f64; 3]>,
     object: Option<Object>,
 }
 
@@ -42,12 +36,7 @@ impl CarriedHand {
                 *at = sim.actuator(name).map(ActuatorId::index)?;
             }
         }
-        let mut palm_freedoms = [0; 3];
-        for (at, name) in palm_freedoms.iter_mut().zip(names::PALM_JOINTS) {
-            *at = sim.joint(name)?.dof.start;
-        }
-        let lead = hand.palm.velocity_gain / hand.palm.position_gain;
-        Ok(Self { sim, places, tendons, palm_freedoms, palm_targets, winches, lead, carried: None, object: None })
+        Ok(Self { sim, places, tendons, palm_targets, winches, object: None })
     }
 
     /// Begins anew: the hand open with its palm at `palm`, m, and the object at rest on the floor.
@@ -63,29 +52,15 @@ impl CarriedHand {
             state[at] = place;
         }
         self.object = Some(object);
-        self.carried = Some(palm);
-        self.aim(palm);
+        self.carry(palm);
         Ok(())
     }
 
-    /// Sends the palm to a place, m, by the compliant control with which controllers are trained.
-    pub fn aim(&mut self, palm: [f64; 3]) {
+    /// Carries the palm to a place, m, with the stiffness that the description has.
+    pub fn carry(&mut self, palm: [f64; 3]) {
         for (&control, place) in self.palm_targets.iter().zip(palm) {
             self.sim.ctrl_mut()[control] = place;
         }
-    }
-
-    /// Carries the palm on to a place, m, within the next step, as an arm does that does not yield.
-    pub fn carry(&mut self, palm: [f64; 3]) {
-        let from = self.carried.unwrap_or(palm);
-        let step = self.sim.timestep();
-        for axis in 0..3 {
-            let velocity = (palm[axis] - from[axis]) / step;
-            self.sim.qpos_mut()[self.places.palm[axis]] = from[axis];
-            self.sim.qvel_mut()[self.palm_freedoms[axis]] = velocity;
-            self.sim.ctrl_mut()[self.palm_targets[axis]] = from[axis] + self.lead * velocity;
-        }
-        self.carried = Some(palm);
     }
 
     /// Holds the tendons wound to `wound`, m.

@@ -88,10 +88,9 @@ const OUTPUTS: [(&str, FieldType, Source); 70] = {
 };
 
 /// Names that controllers of the first generation do not know.
-const NEW: [&str; 6] = [
+const NEW: [&str; 5] = [
     "ft_raw_wrench",
     "wrench_calc_from_currents",
-    "payload_inertia",
     "joint_position_deviation_ratio",
     "collision_detection_ratio",
     "time_scale_source",

@@ -2,6 +2,7 @@
 //!
 //! The host calls [`UrEmulator::advance`] as time goes on. Faults are ordered by text; `docs/deploy_arm.md` has their table.
 
+mod alone;
 mod controller;
 mod dashboard;
 mod faults;
@@ -21,6 +22,7 @@ use std::sync::{Arc, Mutex};
 use hwasp_drivers::Pose;
 use thiserror::Error;
 
+pub use alone::Alone;
 pub use kinematics::{Joints, Lengths, UR5, UR5E, frame_of, pose_of};
 pub use settings::{Generation, Ports, UrEmulatorSettings};
 
@@ -44,7 +46,7 @@ pub struct UrEmulator {
     ports: Ports,
     /// Time that is not yet a whole millisecond, s.
     rest: f64,
-    _doors: [Door; 3],
+    _doors: [Door; 4],
 }
 
 impl UrEmulator {
@@ -58,9 +60,14 @@ impl UrEmulator {
         let rtde = open(settings.ports.rtde, Service::Rtde, "RTDE")?;
         let dashboard = open(settings.ports.dashboard, Service::Dashboard, "the dashboard")?;
         let script = open(settings.ports.script, Service::Script, "programs")?;
-        let ports =
-            Ports { rtde: rtde.address.port(), dashboard: dashboard.address.port(), script: script.address.port() };
-        Ok(Self { shared, ports, rest: 0.0, _doors: [rtde, dashboard, script] })
+        let realtime = open(settings.ports.realtime, Service::Script, "programs")?;
+        let ports = Ports {
+            rtde: rtde.address.port(),
+            dashboard: dashboard.address.port(),
+            script: script.address.port(),
+            realtime: realtime.address.port(),
+        };
+        Ok(Self { shared, ports, rest: 0.0, _doors: [rtde, dashboard, script, realtime] })
     }
 
     /// Where it listens.

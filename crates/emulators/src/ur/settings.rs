@@ -45,15 +45,17 @@ pub struct Ports {
     pub rtde: u16,
     /// Of the dashboard.
     pub dashboard: u16,
-    /// For programs.
+    /// For programs: the secondary interface.
     pub script: u16,
+    /// For programs too: the real-time interface, to which `ur_rtde` sends.
+    pub realtime: u16,
 }
 
 impl Ports {
     /// Any that are free.
-    pub const ANY: Self = Self { rtde: 0, dashboard: 0, script: 0 };
+    pub const ANY: Self = Self { rtde: 0, dashboard: 0, script: 0, realtime: 0 };
     /// Those of the vendor.
-    pub const VENDOR: Self = Self { rtde: 30004, dashboard: 29999, script: 30002 };
+    pub const VENDOR: Self = Self { rtde: 30004, dashboard: 29999, script: 30002, realtime: 30003 };
 }
 
 /// What is emulated.

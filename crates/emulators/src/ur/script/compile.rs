@@ -230,7 +230,7 @@ impl Compiler {
             "global" | "local" => {
                 let name = self.name()?;
                 self.must("=")?;
-                self.expression(0)?;
+                self.value()?;
                 self.step(if word == "global" { Step::StoreGlobal(name) } else { Step::StoreLocal(name) });
             }
             "kill" | "join" => {
@@ -243,7 +243,8 @@ impl Compiler {
             _ => self.simple(word)?,
         }
         match self.peek() {
-            Token::End | Token::Sign(";") => Ok(()),
+            // The next one may follow on the same line.
+            Token::End | Token::Sign(";") | Token::Name(_) => Ok(()),
             other => Err(format!("the statement should end before {other:?}")),
         }
     }
@@ -251,7 +252,7 @@ impl Compiler {
     /// `name = …`, `name[…] = …`, or an expression.
     fn simple(&mut self, name: String) -> Result<(), String> {
         if self.has("=") {
-            self.expression(0)?;
+            self.value()?;
             self.step(Step::Store(name));
             return Ok(());
         }
@@ -259,7 +260,7 @@ impl Compiler {
         if self.has("[") {
             self.expression(0)?;
             if self.has("]") && self.has("=") {
-                self.expression(0)?;
+                self.value()?;
                 self.step(Step::StoreAt(name));
                 return Ok(());
             }
@@ -270,6 +271,12 @@ impl Compiler {
         self.expression(0)?;
         self.step(Step::Drop);
         Ok(())
+    }
+
+    /// What is assigned; it may begin on a later line.
+    fn value(&mut self) -> Result<(), String> {
+        self.blank();
+        self.expression(0)
     }
 
     fn condition(&mut self) -> Result<(), String> {

@@ -142,6 +142,11 @@ def compare(report, emulator, probe, address, generation):
     drive = ours(probe, address, frequency, "drive")
     report.near("pose after 50 of our poses, target and our driver", apart(drive["target"], drive["circle"]), 1e-4)
     report.near("pose after our straight move, ours and ur_rtde", apart(drive["back"], receive.getActualTCPPose()))
+    upper = rtde_receive.RTDEReceiveInterface(address, -1.0, [], False, True)
+    registers = [upper.getOutputIntRegister(at) for at in range(24, 28)]
+    again = ours(probe, address, frequency, "facts")
+    report.row("registers of our program, read by both", registers == again["registers"] and registers[0] == 5, str(registers))
+    upper.disconnect()
     report.near("pose after both, start of ur_rtde and now", apart(start, receive.getActualTCPPose()), 5e-5)
     receive.disconnect()
 

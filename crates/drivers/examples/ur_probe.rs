@@ -38,7 +38,7 @@ fn facts(settings: &UrSettings) -> Result<String, DriverError> {
     Ok(format!(
         concat!(
             r#"{{"controller": {:?}, "polyscope": {:?}, "serial": {:?}, "robot_mode": {}, "safety_mode": {}, "#,
-            r#""runtime_state": {}, "joints": {:?}, "pose": {:?}, "tcp": {:?}, "payload": {:?}}}"#
+            r#""runtime_state": {}, "registers": {:?}, "joints": {:?}, "pose": {:?}, "tcp": {:?}, "payload": {:?}}}"#
         ),
         facts.controller,
         facts.polyscope,
@@ -46,6 +46,7 @@ fn facts(settings: &UrSettings) -> Result<String, DriverError> {
         reading.robot_mode,
         reading.safety_mode,
         reading.runtime_state,
+        [reading.doing, reading.taken, reading.heard, reading.program],
         reading.joints,
         six(&reading.tool),
         facts.tcp.as_ref().map(six).unwrap_or_default(),

@@ -10,6 +10,8 @@ mod fields;
 mod functions;
 mod kinematics;
 mod motion;
+#[cfg(test)]
+mod program_tests;
 mod rtde;
 mod script;
 mod server;
@@ -83,6 +85,11 @@ impl UrEmulator {
     /// How fast the tool is, m/s.
     pub fn tool_speed(&self) -> f64 {
         lock(&self.shared).controller.speed()
+    }
+
+    /// Its clock, s; it goes on with [`UrEmulator::advance`].
+    pub fn clock(&self) -> f64 {
+        lock(&self.shared).controller.clock
     }
 
     /// Where the joints are, rad.

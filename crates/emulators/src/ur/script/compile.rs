@@ -56,7 +56,8 @@ pub(crate) struct Program {
 
 /// Makes steps of a text: `def name(): … end`, or single lines.
 pub(crate) fn compile(text: &str) -> Result<Program, String> {
-    let mut compiler = Compiler { words: words(text)?, at: 0, program: Program::default(), loops: Vec::new() };
+    let mut compiler =
+        Compiler { words: words(text)?, at: 0, program: Program::default(), loops: Vec::new(), depth: 0 };
     compiler.whole().map_err(|cause| format!("line {}: {cause}", compiler.line()))?;
     Ok(compiler.program)
 }
@@ -67,7 +68,12 @@ struct Compiler {
     program: Program,
     /// Of each loop around: where it begins, and the jumps that leave it.
     loops: Vec<(usize, Vec<usize>)>,
+    /// How deep it is in blocks and brackets.
+    depth: usize,
 }
+
+/// Deeper than any program that a person writes.
+const DEEPEST: usize = 100;
 
 /// Operators by how tightly they bind, loosest first.
 const LEVELS: [&[&str]; 5] =
@@ -199,6 +205,21 @@ impl Compiler {
     }
 
     fn statement(&mut self) -> Result<(), String> {
+        self.deeper(Self::one)
+    }
+
+    /// Goes into something that may hold itself.
+    fn deeper(&mut self, part: fn(&mut Self) -> Result<(), String>) -> Result<(), String> {
+        if self.depth >= DEEPEST {
+            return Err(format!("blocks and brackets are nested deeper than {DEEPEST}"));
+        }
+        self.depth += 1;
+        let end = part(self);
+        self.depth -= 1;
+        end
+    }
+
+    fn one(&mut self) -> Result<(), String> {
         let Token::Name(word) = self.peek().clone() else {
             return Err(format!("a statement does not begin with {:?}", self.peek()));
         };
@@ -336,6 +357,10 @@ impl Compiler {
     }
 
     fn factor(&mut self) -> Result<(), String> {
+        self.deeper(Self::item)
+    }
+
+    fn item(&mut self) -> Result<(), String> {
         match self.next() {
             Token::Number(number) => drop(self.step(Step::Push(Value::Number(number)))),
             Token::Text(text) => drop(self.step(Step::Push(Value::Text(text)))),

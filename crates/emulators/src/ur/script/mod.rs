@@ -8,3 +8,6 @@ mod value;
 pub(crate) use compile::compile;
 pub(crate) use machine::{Answer, Arguments, Controller, Machine, Wait};
 pub(crate) use value::Value;
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@ mod arm;
 pub mod dynamixel;
 mod error;
 mod motor;
+pub mod ur;
 
 pub use arm::{Arm, ArmMode, ArmState, Pose, Safety};
 pub use dynamixel::{Dynamixel, DynamixelSettings};

@@ -3,6 +3,7 @@
 
 pub mod dynamixel;
 pub mod hand;
+pub mod ur;
 mod world;
 
 pub use dynamixel::DynamixelEmulator;

@@ -90,6 +90,13 @@ impl DynamixelEmulator {
         &self.path
     }
 
+    /// Its identity and its speed, bits per second, as they are now.
+    pub fn identity(&self) -> (u8, u32) {
+        let device = self.device();
+        let baud = table::BAUD_RATES[device.memory.get(&table::BAUD_RATE) as usize % table::BAUD_RATES.len()];
+        (device.memory.get(&table::ID) as u8, baud)
+    }
+
     /// What the motor does to the spool now.
     pub fn drive(&self) -> SpoolDrive {
         self.device().drive()

@@ -59,6 +59,8 @@ class Vendor:
     """ROBOTIS' own client."""
 
     def __init__(self, port):
+        # It waits for twice this. On a busy machine it takes an answer that is later for the next one's, and never finds back.
+        dynamixel_sdk.port_handler.LATENCY_TIMER = 500
         self.port = dynamixel_sdk.PortHandler(port)
         assert self.port.openPort() and self.port.setBaudRate(1_000_000)
         self.packets = dynamixel_sdk.PacketHandler(2.0)
@@ -88,7 +90,7 @@ class Rustypot:
     """A client of others. It has no XM430; the definition of its XL430 covers its sisters XM430-W350 and others."""
 
     def __init__(self, port):
-        self.bus = rustypot.Bus(port, 1_000_000, 0.1, {1: rustypot.Xl430PyController.definition()})
+        self.bus = rustypot.Bus(port, 1_000_000, 1.0, {1: rustypot.Xl430PyController.definition()})
 
     def ping(self):
         return self.read(0, 2)

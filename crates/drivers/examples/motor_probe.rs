@@ -3,12 +3,14 @@
 
 use std::error::Error;
 use std::io::{self, Write};
+use std::time::Duration;
 
 use hwasp_drivers::{DriverError, Dynamixel, DynamixelSettings, Motor};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let port = std::env::args_os().nth(1).ok_or("motor_probe PORT")?.into();
-    let mut motor = Dynamixel::open(DynamixelSettings { port, ..DynamixelSettings::default() })?;
+    let mut motor =
+        Dynamixel::open(DynamixelSettings { port, reply: Duration::from_secs(1), ..DynamixelSettings::default() })?;
     let mut output = io::stdout();
     for line in io::stdin().lines() {
         let line = line?;

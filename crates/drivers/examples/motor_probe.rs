@@ -1,5 +1,5 @@
 //! `motor_probe PORT`: our driver of the motor, one line of JSON for each line that it reads: `ping`, `read ADDRESS BYTES`,
-//! `write ADDRESS BYTES VALUE`, `prepare`, `torque on`, `torque off`, `goal RAD A`, `state`. For scripts/dynamixel_peer.py.
+//! `write ADDRESS BYTES VALUE`, `prepare`, `torque on`, `torque off`, `goal RAD A`, `state`. For `scripts/dynamixel_peer.py`.
 
 use std::error::Error;
 use std::io::{self, Write};

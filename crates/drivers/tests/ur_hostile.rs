@@ -47,7 +47,7 @@ impl Script {
     }
 }
 
-/// Serves one client.
+/// Serves one client, or one that comes again to ask for less.
 fn serve(script: Script) -> (UrSettings, JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let mut settings = UrSettings::new("127.0.0.1");
@@ -55,40 +55,46 @@ fn serve(script: Script) -> (UrSettings, JoinHandle<()>) {
     settings.answer = Duration::from_millis(1500);
     settings.oldest = Duration::from_millis(900);
     let server = std::thread::spawn(move || {
-        let (mut stream, _) = listener.accept().expect("a client");
-        let (mut frames, mut bytes) = (Frames::default(), [0; 2048]);
-        loop {
-            let frame = loop {
-                if let Some(frame) = frames.take().expect("frames of ours") {
-                    break frame;
-                }
-                match stream.read(&mut bytes) {
-                    Ok(count) if count > 0 => frames.push(&bytes[..count]),
-                    _ => return,
-                }
-            };
-            let answer = match frame.kind {
-                kind::PROTOCOL => &script.protocol,
-                kind::CONTROLLER => &script.version,
-                kind::OUTPUTS if frame.body.ends_with(b"payload") => &script.outputs,
-                kind::OUTPUTS => &script.fewer,
-                kind::INPUTS => &script.inputs,
-                kind::START => &script.start,
-                _ => continue,
-            };
-            let _ = stream.write_all(&Frame::bytes(frame.kind, answer).expect("short"));
-            if frame.kind == kind::START {
-                let mut packet = vec![1];
-                packet.resize(if script.fewer.is_empty() { 1 + PACKET } else { 1 + PACKET - 56 }, 0);
-                let _ = stream.write_all(&Frame::bytes(kind::DATA, &packet).expect("short"));
-                let _ = stream.write_all(&script.then);
-                if script.closes {
-                    return;
-                }
-            }
+        for _ in 0..if script.fewer.is_empty() { 1 } else { 2 } {
+            let (stream, _) = listener.accept().expect("a client");
+            answer(stream, &script);
         }
     });
     (settings, server)
+}
+
+fn answer(mut stream: TcpStream, script: &Script) {
+    let (mut frames, mut bytes) = (Frames::default(), [0; 2048]);
+    loop {
+        let frame = loop {
+            if let Some(frame) = frames.take().expect("frames of ours") {
+                break frame;
+            }
+            match stream.read(&mut bytes) {
+                Ok(count) if count > 0 => frames.push(&bytes[..count]),
+                _ => return,
+            }
+        };
+        let answer = match frame.kind {
+            kind::PROTOCOL => &script.protocol,
+            kind::CONTROLLER => &script.version,
+            kind::OUTPUTS if frame.body.ends_with(b"payload") => &script.outputs,
+            kind::OUTPUTS => &script.fewer,
+            kind::INPUTS => &script.inputs,
+            kind::START => &script.start,
+            _ => continue,
+        };
+        let _ = stream.write_all(&Frame::bytes(frame.kind, answer).expect("short"));
+        if frame.kind == kind::START {
+            let mut packet = vec![1];
+            packet.resize(if script.fewer.is_empty() { 1 + PACKET } else { 1 + PACKET - 56 }, 0);
+            let _ = stream.write_all(&Frame::bytes(kind::DATA, &packet).expect("short"));
+            let _ = stream.write_all(&script.then);
+            if script.closes {
+                return;
+            }
+        }
+    }
 }
 
 /// What comes of connecting and of the state that follows.

@@ -134,10 +134,10 @@ fn refusals_and_odd_answers_of_the_beginning() {
     says(Script { outputs: kinds(1, wrong), ..good() }, "types came back");
     let mut used = good();
     used.inputs = kinds(0, &["IN_USE,INT32,INT32", &",DOUBLE".repeat(7)].concat());
-    says(used, "input_int_register_24 is in use by another client or a field bus");
+    says(used, "input_int_register_36 is in use by another client or a field bus");
     let mut old = good();
     old.inputs = kinds(0, &["NOT_FOUND,INT32,INT32", &",DOUBLE".repeat(7)].concat());
-    says(old, "input_int_register_24 is not known to the controller: update it");
+    says(old, "input_int_register_36 is not known to the controller: update it");
     says(Script { start: vec![0], ..good() }, "the controller does not start to send");
 }
 

@@ -183,7 +183,7 @@ fn two_drivers_do_not_drive_one_arm() {
     let (_alone, settings) = start(Generation::Cb3);
     let _first = driven(&settings);
     let second = UrArm::connect(&settings).unwrap_err();
-    assert!(second.to_string().contains("input_int_register_24 is in use by another client"), "{second}");
+    assert!(second.to_string().contains("input_int_register_36 is in use by another client"), "{second}");
 }
 
 #[test]

@@ -84,8 +84,14 @@ fn speeds_are_those_of_the_tool() {
     });
     assert!((watch - 0.02).abs() < 1e-4, "{watch} m/s");
     until(&alone, &mut arm, "it stands", |state| state.as_ref().is_ok_and(|s| s.tool_speed == [0.0; 3]));
-    let way = alone.emulator().tool().distance(&begin);
+    let rest = alone.emulator().tool();
+    assert!(arm.move_to(&begin, 0.05).is_err(), "not while it is interrupted");
+    pause(50);
+    assert_eq!(alone.emulator().tool(), rest);
+    let way = rest.distance(&begin);
     assert!(way > 0.005 && way < 0.06, "{way} m");
+    interrupt.store(false, std::sync::atomic::Ordering::Relaxed);
+    arm.move_to(&begin, 0.1).expect("moved");
 }
 
 #[test]

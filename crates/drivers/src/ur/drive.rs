@@ -103,6 +103,7 @@ impl UrArm {
     }
 
     /// Set to true by whoever wants a straight move to end early (Ctrl-C): it stops then, and says that it was interrupted.
+    /// No other begins until it is false again.
     pub fn interrupt(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.interrupted)
     }
@@ -191,6 +192,13 @@ impl UrArm {
         DriverError::Refused { device: self.settings.device(), what, cause: cause.to_owned() }
     }
 
+    fn uninterrupted(&self) -> Result<(), DriverError> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(self.refused("straight move", "it was interrupted"));
+        }
+        Ok(())
+    }
+
     /// Waits until the move is over: it has arrived, or says why not.
     fn arrive(&mut self, target: &Pose, speed: f64, patience: Duration) -> Result<(), DriverError> {
         let what = "straight move";
@@ -202,9 +210,7 @@ impl UrArm {
             let reading = self.link.newest()?.1.reading;
             self.driven(what, &reading)?;
             self.heard(what, &reading)?;
-            if self.interrupted.load(Ordering::Relaxed) {
-                return Err(self.refused(what, "it was interrupted"));
-            }
+            self.uninterrupted()?;
             if reading.taken == self.number && Doing::of(reading.doing) == Some(Doing::Standing) {
                 let (away, turned) = (state.tool.distance(target), state.tool.turn(target));
                 if away <= ARRIVED.0 && turned <= ARRIVED.1 {
@@ -263,6 +269,7 @@ impl Arm for UrArm {
     fn move_to(&mut self, target: &Pose, speed: f64) -> Result<(), DriverError> {
         self.settings.check_target(target)?;
         self.settings.check_speed(speed)?;
+        self.uninterrupted()?;
         let reading = self.fresh()?.reading;
         self.driven("straight move", &reading)?;
         self.target = *target;

@@ -118,7 +118,7 @@ fn a_hand_behind_the_motor() {
 
 /// Both drivers over both emulators lift an object: down and up at 0.1 m/s, 20 mm of tendon a second, a command every 8 ms.
 #[test]
-#[ignore = "in real time: `cargo test -p hwasp-emulators --test bench -- --ignored` on a machine that does nothing else"]
+#[ignore = "in real time: `cargo test -p hwasp-emulators --test bench_process -- --ignored` on a machine that does nothing else"]
 fn arm_and_motor_lift_an_object() {
     // The tool of the emulated arm begins above the origin of the world.
     let base = [0.347_542, 0.109_15, -0.12];

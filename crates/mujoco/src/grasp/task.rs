@@ -133,7 +133,7 @@ impl Task for GraspTask {
         }
     }
 
-    fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &GraspPlant, command: &[f64]) -> f64 {
         let (palm, object, clearance) = (plant.palm(), plant.object_position(), plant.clearance());
         let touching = plant.touching();
         let digit = |d: usize| touching[2 * d] || touching[2 * d + 1];
@@ -148,7 +148,8 @@ impl Task for GraspTask {
         let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
         let before = std::mem::replace(&mut self.beside, beside(palm, object));
         let nearer = reward.approach * (before - self.beside);
-        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer
+        let sideways = if let [x, y, _, _] = command { reward.sideways * x.hypot(*y) } else { 0.0 };
+        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer + sideways
     }
 
     fn look(&mut self, plant: &GraspPlant) -> Option<Sight> {

@@ -129,8 +129,14 @@ impl GraspPlant {
         touched
     }
 
-    /// Starts an episode: open hand above an object at rest.
-    pub(super) fn start(&mut self, object: Object, palm_height: f64, rng: &mut Stream) -> Result<(), EditError> {
+    /// Starts an episode at this fraction of training: open hand above an object at rest.
+    pub(super) fn start(
+        &mut self,
+        object: Object,
+        palm_height: f64,
+        progress: f64,
+        rng: &mut Stream,
+    ) -> Result<(), EditError> {
         let places = &self.places;
         object.enter(&mut self.sim, places.object_body, places.object_geom[0], places.floor)?;
         let state = self.sim.qpos_mut();
@@ -143,7 +149,7 @@ impl GraspPlant {
         self.object = object;
         (self.travel, self.held, self.motor_torque, self.fault) = (0.0, 0.0, 0.0, None);
         self.noise = Stream::seed_from_u64(rng.random());
-        self.drawn = self.sensors.draw(rng);
+        self.drawn = self.sensors.draw(progress, rng);
         let reading = self.look();
         self.sensors.start(reading, self.drawn.delay);
         Ok(())

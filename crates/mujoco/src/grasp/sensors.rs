@@ -1,6 +1,6 @@
 //! What stands between the hand and its controller: what is told of the sensors, and how late.
 
-use hwasp_core::Stream;
+use hwasp_core::{Stream, share_done};
 use hwasp_tasks::grasp::{Bench, CarriedObject, ObjectSensed, TravelSensed};
 use rand::RngExt;
 
@@ -79,18 +79,22 @@ impl Sensors {
         }
     }
 
-    /// Draws the bench of an episode.
-    pub(super) fn draw(&self, rng: &mut Stream) -> Drawn {
-        let Bench { delay, arm_lag, slack, torque_gain, limit_gain, .. } = &self.settings;
-        let mut between = |range: &[f64; 2]| range[0] + (range[1] - range[0]) * rng.random::<f64>();
-        let delay = steps(between(delay), self.period);
-        let lag = between(arm_lag);
+    /// Draws the bench of an episode at this fraction of training.
+    pub(super) fn draw(&self, progress: f64, rng: &mut Stream) -> Drawn {
+        let Bench { delay, arm_lag, slack, torque_gain, limit_gain, growth: [from, to], .. } = &self.settings;
+        let grown = share_done(progress, *from, *to);
+        let mut between = |[lo, hi]: &[f64; 2], none: f64| {
+            let drawn = lo + (hi - lo) * rng.random::<f64>();
+            if grown < 1.0 { none + grown * (drawn - none) } else { drawn }
+        };
+        let delay = steps(between(delay, 0.0), self.period);
+        let lag = between(arm_lag, 0.0);
         Drawn {
             delay,
             behind: if lag > 0.0 { (-self.period / lag).exp() } else { 0.0 },
-            slack: between(slack),
-            torque_gain: between(torque_gain),
-            limit_gain: between(limit_gain),
+            slack: between(slack, 0.0),
+            torque_gain: between(torque_gain, 1.0),
+            limit_gain: between(limit_gain, 1.0),
         }
     }
 

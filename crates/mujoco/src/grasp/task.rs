@@ -109,7 +109,7 @@ impl Task for GraspTask {
         self.taken = 0;
         let top = object.bounding_box()[2];
         // Settings were checked: what is drawn from them is a body.
-        let started = plant.start(object, top + above, rng);
+        let started = plant.start(object, top + above, self.progress, rng);
         debug_assert!(started.is_ok(), "{started:?}");
         self.beside = beside(plant.palm(), plant.object_position());
     }

@@ -46,6 +46,8 @@ pub struct Bench {
     pub torque_gain: [f64; 2],
     /// The motor's real limit, as a multiple of what it should be.
     pub limit_gain: [f64; 2],
+    /// Between which fractions of training the spans grow from nothing to all of it.
+    pub growth: [f64; 2],
 }
 
 impl Default for Bench {
@@ -61,6 +63,7 @@ impl Default for Bench {
             slack: [0.0; 2],
             torque_gain: [1.0; 2],
             limit_gain: [1.0; 2],
+            growth: [0.0; 2],
         }
     }
 }
@@ -88,5 +91,8 @@ impl Bench {
         fields.span("torque_gain", &mut self.torque_gain, Dimension::None, 0.1..=10.0, about);
         let about = "the motor's limit as a multiple of what it should be, drawn once an episode";
         fields.span("limit_gain", &mut self.limit_gain, Dimension::None, 0.1..=10.0, about);
+        let about = "between which fractions of training delay, arm_lag, slack and both gains grow from nothing to what is drawn: a \
+                     curriculum";
+        fields.fractions("bench_growth", &mut self.growth, about);
     }
 }

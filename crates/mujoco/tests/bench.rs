@@ -81,7 +81,7 @@ fn the_encoder_is_held_back_by_the_motors_limit() {
                 held_back += usize::from(told[9] < commanded[9] - 1e-4);
             }
         }
-        assert!(held_back > 100, "native {native}: {held_back}");
+        assert!(held_back > 10, "native {native}: {held_back}");
     }
 }
 
@@ -175,8 +175,8 @@ fn slack_and_a_real_limit_change_the_torques() {
         let real = hwasp_core::Law::new(TendonHand::new(&transmission, &TendonHandSettings::default()).unwrap());
         let nominal = hwasp_core::Law::new(nominal);
         let (mut limited, mut wound) = (0, 0.0);
-        for t in 0..200 {
-            let command = [0.0, 0.0002 * random.random::<f64>()];
+        for t in 0..260 {
+            let command = [0.0, 0.0002 * (0.8 + 0.2 * random.random::<f64>())];
             let (mut state, mut effort, mut wanted) = ([0.0; 7], [0.0; 7], [0.0; 7]);
             robot.state(&mut state);
             assert!((state[0] - (wound - slack)).abs() < 1e-12, "step {t}: {} wound", state[0]);
@@ -193,7 +193,7 @@ fn slack_and_a_real_limit_change_the_torques() {
             assert!((seen(&robot)[10] - 0.5 * wanted[6]).abs() < 1e-9);
             limited += usize::from(wanted[6] > 0.999 * 0.008 * 75.0 * gain);
         }
-        assert!(limited > 10 && limited < 190, "slack {slack}, limit {gain}: {limited} steps at the limit");
+        assert!(limited > 10 && limited < 250, "slack {slack}, limit {gain}: {limited} steps at the limit");
     }
 }
 

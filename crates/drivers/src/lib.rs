@@ -4,6 +4,7 @@
 mod arm;
 mod error;
 mod motor;
+pub mod ur;
 
 pub use arm::{Arm, ArmMode, ArmState, Pose, Safety};
 pub use error::DriverError;

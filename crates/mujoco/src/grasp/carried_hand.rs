@@ -4,9 +4,9 @@
 use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, MjcfOptions, mjcf, names};
 
 use super::object::vertical;
-use super::plant::{Drive as Moved, Places};
+use super::places::{Drive as Moved, Places};
 use super::{GraspError, Object};
-use crate::engine::{ActuatorId, EditError, PhysicsFault, Simulation, TendonId};
+use crate::engine::{EditError, PhysicsFault, Simulation, TendonId};
 
 /// A hand with its own tendons, an object and a floor.
 #[derive(Clone, Debug)]
@@ -14,8 +14,6 @@ pub struct CarriedHand {
     sim: Simulation,
     places: Places,
     tendons: [TendonId; 3],
-    palm_targets: [usize; 3],
-    winches: [usize; 3],
     object: Option<Object>,
 }
 
@@ -30,13 +28,7 @@ impl CarriedHand {
         let [a, b, c] = names::TENDONS;
         let tendons = [sim.tendon(a)?, sim.tendon(b)?, sim.tendon(c)?];
         let places = Places::look_up(&sim, &Moved::Tendons(tendons))?;
-        let (mut palm_targets, mut winches) = ([0; 3], [0; 3]);
-        for (list, names) in [(&mut palm_targets, names::PALM_ACTUATORS), (&mut winches, names::TENDON_ACTUATORS)] {
-            for (at, name) in list.iter_mut().zip(names) {
-                *at = sim.actuator(name).map(ActuatorId::index)?;
-            }
-        }
-        Ok(Self { sim, places, tendons, palm_targets, winches, object: None })
+        Ok(Self { sim, places, tendons, object: None })
     }
 
     /// Begins anew: the hand open with its palm at `palm`, m, and the object at rest on the floor.
@@ -58,14 +50,14 @@ impl CarriedHand {
 
     /// Carries the palm to a place, m, with the stiffness that the description has.
     pub fn carry(&mut self, palm: [f64; 3]) {
-        for (&control, place) in self.palm_targets.iter().zip(palm) {
+        for (&control, place) in self.places.palm_ctrl.iter().zip(palm) {
             self.sim.ctrl_mut()[control] = place;
         }
     }
 
     /// Holds the tendons wound to `wound`, m.
     pub fn wind(&mut self, wound: f64) {
-        for &control in &self.winches {
+        for &control in &self.places.drive_ctrl {
             self.sim.ctrl_mut()[control] = wound;
         }
     }

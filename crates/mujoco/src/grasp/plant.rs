@@ -7,10 +7,8 @@ use rand_distr::StandardNormal;
 use super::object::{Object, vertical};
 use super::settings::GraspSettings;
 use crate::engine::{BodyId, EditError, GeomId, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
+use hwasp_tasks::grasp::rules::WORKSPACE;
 use hwasp_tasks::hand::{SUBSTEPS, TransmissionDescription, names};
-
-/// Where the palm's target may be, m: from here to there in x, y and z.
-const WORKSPACE: [[f64; 2]; 3] = [[-0.15, 0.15], [-0.15, 0.15], [0.02, 0.60]];
 
 /// What moves the joints.
 #[derive(Clone, Debug, PartialEq)]

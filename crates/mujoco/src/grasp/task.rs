@@ -10,15 +10,7 @@ use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
 use crate::engine::View;
 use hwasp_tasks::grasp::env_spec;
-
-/// The steps at the end of an episode over which a grasp has to hold.
-pub const HOLD_STEPS: usize = 100;
-/// How high the object's lowest point has to be over all of them, m.
-pub const HOLD_HEIGHT: f64 = 0.100;
-/// The share of them in which thumb and a finger have to touch the object.
-pub const HOLD_TOUCH: f64 = 0.9;
-/// How far the object may move relative to the palm over them, m.
-pub const HOLD_DRIFT: f64 = 0.010;
+use hwasp_tasks::grasp::rules::{HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 
 /// What a row of stills shows: the last two are half of what success asks for, and all of it.
 const MOMENTS: [&str; 4] = ["contact", "lifted", "raised 5 cm", "raised 10 cm"];

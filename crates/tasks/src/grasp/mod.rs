@@ -3,7 +3,9 @@
 
 mod carried;
 mod env;
+mod manual;
 mod problem;
+pub mod rules;
 mod settings;
 
 pub use carried::CarriedObject;

@@ -5,8 +5,8 @@
 use hwasp_core::{Hardware, Initial, Law};
 use hwasp_diff::{GradCheckSettings, gradcheck};
 use hwasp_tasks::hand::{
-    DESIGN_LEN, FreeClosing, HandDescription, HandError, HandRange, PAPER_HWASP, PalmMotion, SMALL_CENTRE, TendonHand,
-    TendonHandSettings, TransmissionDescription,
+    DESIGN_LEN, FreeClosing, HandDescription, HandError, HandRange, KINDS_LEN, PAPER_HWASP, PalmMotion, SMALL_CENTRE,
+    TendonHand, TendonHandSettings, TransmissionDescription, opening_torques,
 };
 use proptest::prelude::*;
 
@@ -108,6 +108,66 @@ fn reverse_tangent_and_finite_differences_agree() {
     }
 }
 
+/// A hand whose springs are too weak everywhere: at the thumb a larger preload suffices, at the fingers springs have to be stiffer.
+const WEAK: [f64; DESIGN_LEN] = [0.01, 0.008, 0.006, 0.004, 0.006, 0.004, 0.002, 0.003, 0.5, 0.1, 0.2, 1.0];
+
+fn standing(opening: [f64; KINDS_LEN]) -> TendonHand {
+    let settings = TendonHandSettings { opening: Some(opening), ..TendonHandSettings::default() };
+    TendonHand::new(&TransmissionDescription::default(), &settings).unwrap()
+}
+
+/// 9/6 = 1.5 rad; 2/4 = 0.5 rad; 9/4 = 2.25 N·mm/rad with 4 rad; 2/3 rad is less than there is.
+#[test]
+fn springs_that_are_too_weak_are_built_as_those_that_suffice() {
+    let hand = standing([0.009, 0.002, 0.009, 0.002]);
+    let built = hand.as_built(&WEAK);
+    let wanted = [0.01, 0.008, 0.006, 0.004, 0.006, 0.004, 0.00225, 0.003, 1.5, 0.5, 4.0, 1.0];
+    assert!(built.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-15), "{built:?}");
+    let again: [f64; DESIGN_LEN] = built.clone().try_into().unwrap();
+    assert!(hand.as_built(&again).iter().zip(&built).all(|(a, b)| (a - b).abs() < 1e-15));
+    // The law is that of the hand as it is built.
+    let state = [0.0038, 0.1, 0.05, 0.2, 0.3, 1.0, 0.0];
+    let free = TendonHand::new(&TransmissionDescription::default(), &TendonHandSettings::default()).unwrap();
+    close(effort(&hand, &WEAK, 0.0002, state), effort(&free, &again, 0.0002, state));
+    let strong = [0.01, 0.008, 0.006, 0.004, 0.006, 0.004, 0.006, 0.003, 2.0, 0.6, 2.0, 1.0];
+    assert_eq!(hand.as_built(&strong), strong);
+}
+
+#[test]
+fn the_gradient_knows_that_hands_have_to_stand() {
+    let law = Law::new(standing([0.009, 0.002, 0.009, 0.002]));
+    let columns = [0.001, 0.0001, 0.004, 0.1, 0.05, 0.2, 0.3, 0.15, 0.25];
+    let settings = GradCheckSettings { first_step: 1e-3, ..GradCheckSettings::default() };
+    for design in [WEAK, SMALL_CENTRE] {
+        let checked = gradcheck(law.program(), &design, &columns, &settings);
+        assert!(checked.is_ok(), "{}", checked.unwrap_err());
+    }
+}
+
+/// The torque of gravity about both joints of every digit, written anew, over all poses.
+#[test]
+fn hands_that_stand_open_stand_at_every_pose() {
+    let (hand, margin) = (HandDescription::default(), 0.001);
+    let opening = opening_torques(&hand, margin);
+    let built = standing(opening).as_built(&WEAK);
+    for (digit, first) in [(&hand.thumb, 0), (&hand.fingers[0], 2)] {
+        let mut least = f64::INFINITY;
+        for (a, b) in
+            (0..=30).flat_map(|a| (0..=30).map(move |b| (f64::from(a) * 1.57 / 30.0, f64::from(b) * 1.57 / 30.0)))
+        {
+            let (lean, tip_lean) = (hand.joint.rest_angle - a, hand.joint.rest_angle - a - b);
+            let tip = digit.distal.mass * digit.distal.centre * tip_lean.sin();
+            let root =
+                (digit.proximal.mass * digit.proximal.centre + digit.distal.mass * digit.proximal.length) * lean.sin();
+            for (j, (weight, angle)) in [(root + tip, a), (tip, b)].into_iter().enumerate() {
+                let spring = built[4 + first + j] * (angle + built[8 + first + j]);
+                least = least.min(spring - 9.81 * weight);
+            }
+        }
+        assert!((least - margin).abs() < 1e-5, "{least} N·m");
+    }
+}
+
 #[test]
 fn ports_are_named_in_the_order_of_the_slices() {
     let ports = hand(75.0).ports();
@@ -121,6 +181,9 @@ fn impossible_transmissions_are_refused() {
     let transmission = TransmissionDescription { tendon_stiffness: -1.0, ..TransmissionDescription::default() };
     let error = TendonHand::new(&transmission, &TendonHandSettings::default()).unwrap_err();
     assert_eq!(error.to_string(), "transmission.tendon_stiffness = -1 N/m is not a positive finite number");
+    let settings = TendonHandSettings { opening: Some([0.1; KINDS_LEN]), ..TendonHandSettings::default() };
+    let error = TendonHand::new(&TransmissionDescription::default(), &settings).unwrap_err();
+    assert_eq!(error.to_string(), "opening torque = 0.1 N·m is outside of [0, 0.048]; choose it between them");
     let settings = TendonHandSettings { initial: [Initial::Value(1.0); DESIGN_LEN], ..TendonHandSettings::default() };
     let error = TendonHand::new(&TransmissionDescription::default(), &settings).unwrap_err();
     assert!(matches!(error, HandError::Design(_)) && error.to_string().starts_with("thumb_proximal_radius"));

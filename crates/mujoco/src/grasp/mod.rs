@@ -6,8 +6,10 @@
 //! | `palm_x`, `palm_y`, `palm_z` | m | noisy |
 //! | `object_x`, `object_y`, `object_z` | m | its centre, noisy; relative to the palm where [`Viewpoint`] says so |
 //! | `size_x`, `size_y`, `size_z` | m | its bounding box as it lies at the start |
-//! | `motor_travel` | m | tendon wound, as commanded, noisy |
+//! | `motor_travel` | m | tendon wound, as commanded or by the encoder, noisy |
 //! | `motor_torque` | N·m | of the last step |
+//!
+//! [`Bench`](hwasp_tasks::grasp::Bench) says what of it is sensed, how late and how wrong.
 //!
 //! # Command
 //! | port | unit | range |
@@ -31,9 +33,11 @@
 
 mod film;
 mod object;
+mod places;
 mod plant;
 mod problem;
 mod script;
+mod sensors;
 mod settings;
 mod task;
 
@@ -47,7 +51,7 @@ pub use object::Object;
 pub use plant::GraspPlant;
 pub use problem::{engine, settings_of};
 pub use script::Script;
-pub use settings::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
+pub use settings::{Bench, GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
 pub use task::GraspTask;
 
 use crate::engine::{BuildError, Simulation, UnknownName};
@@ -91,13 +95,15 @@ impl Grasp {
     /// The plant in which one learns: the law's torques act on independent joints.
     pub fn new(settings: GraspSettings) -> Result<Self, GraspError> {
         let model = mjcf(&settings.hand, &MjcfOptions::default())?;
-        Self::build(settings, &model, |_| Ok(plant::Drive::Torques))
+        Self::build(settings, &model, |_| Ok(places::Drive::Torques))
     }
 
     /// The same task on the hand with MuJoCo's own tendons, springs and pulleys of `design`, at the simulation's rate, in
     /// which the law has no say: what a controller has to master as it would the built hand.
     pub fn native(settings: GraspSettings, design: &[f64; DESIGN_LEN]) -> Result<Self, GraspError> {
-        let drive = hand::Drive::NativeTendon { design: *design };
+        let mut built = *design;
+        built.copy_from_slice(&law(&settings)?.as_built(design));
+        let drive = hand::Drive::NativeTendon { design: built };
         let model = mjcf(&settings.hand, &MjcfOptions { drive, ..MjcfOptions::default() })?;
         Self::native_from(settings, &model)
     }
@@ -105,20 +111,19 @@ impl Grasp {
     /// The same, of a model that was written to a file: the text of [`mjcf`] with native tendons, or one with the same names.
     pub fn native_from(settings: GraspSettings, model: &str) -> Result<Self, GraspError> {
         let [a, b, c] = names::TENDONS;
-        Self::build(settings, model, |sim| Ok(plant::Drive::Tendons([sim.tendon(a)?, sim.tendon(b)?, sim.tendon(c)?])))
+        Self::build(settings, model, |sim| Ok(places::Drive::Tendons([sim.tendon(a)?, sim.tendon(b)?, sim.tendon(c)?])))
     }
 
     fn build(
         settings: GraspSettings,
         model: &str,
-        drive: impl FnOnce(&Simulation) -> Result<plant::Drive, UnknownName>,
+        drive: impl FnOnce(&Simulation) -> Result<places::Drive, UnknownName>,
     ) -> Result<Self, GraspError> {
         settings.check()?;
-        let law = TendonHandSettings { palm: settings.palm, range: settings.range, initial: settings.initial };
-        let law = Law::new(TendonHand::new(&settings.hand.transmission, &law)?);
+        let law = law(&settings)?;
         let sim = Simulation::from_mjcf(model)?;
         let drive = drive(&sim)?;
-        let plant = GraspPlant::new(&settings, sim, drive)?;
+        let plant = GraspPlant::new(&settings, law.clone(), sim, drive)?;
         Ok(Self { settings, law, plant })
     }
 
@@ -141,6 +146,12 @@ impl Grasp {
     pub fn shared(self) -> Arc<dyn MakeEnvironment> {
         Arc::new(self)
     }
+}
+
+/// The mechanism that settings ask for.
+fn law(settings: &GraspSettings) -> Result<Law, GraspError> {
+    let GraspSettings { palm, range, initial, opening, .. } = *settings;
+    Ok(Law::new(TendonHand::new(&settings.hand.transmission, &TendonHandSettings { palm, range, initial, opening })?))
 }
 
 impl MakeEnvironment for Grasp {

@@ -1,69 +1,16 @@
 //! The hand, the object and the floor, one environment step at a time.
 
-use hwasp_core::{Plant, Stream};
+use hwasp_core::{Law, Plant, Stream};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
 use super::object::{Object, vertical};
+use super::places::{Drive, Places};
+use super::sensors::{Drawn, Reading, Sensors};
 use super::settings::GraspSettings;
-use crate::engine::{BodyId, EditError, GeomId, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
+use crate::engine::{EditError, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
 use hwasp_tasks::grasp::rules::WORKSPACE;
-use hwasp_tasks::hand::{SUBSTEPS, TransmissionDescription, names};
-
-/// What moves the joints.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Drive {
-    /// The law's torques, held for an environment step.
-    Torques,
-    /// MuJoCo's own tendons, evaluated at each simulation step.
-    Tendons([TendonId; 3]),
-}
-
-/// Where things stand in the simulation.
-#[derive(Clone, Debug)]
-pub(super) struct Places {
-    pub(super) palm: [usize; 3],
-    pub(super) joints: [usize; 6],
-    pub(super) object: usize,
-    pub(super) object_body: BodyId,
-    pub(super) palm_body: BodyId,
-    pub(super) object_geom: [GeomId; 1],
-    pub(super) floor: GeomId,
-    pub(super) links: [GeomId; 6],
-    palm_ctrl: [usize; 3],
-    drive_ctrl: Vec<usize>,
-}
-
-impl Places {
-    pub(super) fn look_up(sim: &Simulation, drive: &Drive) -> Result<Self, UnknownName> {
-        let joint = |name: &str| sim.joint(name).map(|address| address.qpos.start);
-        let actuator = |name: &str| sim.actuator(name).map(crate::engine::ActuatorId::index);
-        let drive_names = match drive {
-            Drive::Torques => &names::TORQUE_ACTUATORS[..],
-            Drive::Tendons(_) => &names::TENDON_ACTUATORS[..],
-        };
-        let [px, py, pz] = names::PALM_JOINTS;
-        let [ax, ay, az] = names::PALM_ACTUATORS;
-        let mut joints = [0; 6];
-        let mut links = [sim.geom(names::OBJECT_GEOM)?; 6];
-        for (i, (name, pad)) in names::JOINTS.iter().zip(names::LINK_GEOMS).enumerate() {
-            joints[i] = joint(name)?;
-            links[i] = sim.geom(pad)?;
-        }
-        Ok(Self {
-            palm: [joint(px)?, joint(py)?, joint(pz)?],
-            joints,
-            object: joint(names::OBJECT_JOINT)?,
-            object_body: sim.body(names::OBJECT)?,
-            palm_body: sim.body(names::PALM)?,
-            object_geom: [sim.geom(names::OBJECT_GEOM)?],
-            floor: sim.geom(names::FLOOR)?,
-            links,
-            palm_ctrl: [actuator(ax)?, actuator(ay)?, actuator(az)?],
-            drive_ctrl: drive_names.iter().map(|name| actuator(name)).collect::<Result<_, _>>()?,
-        })
-    }
-}
+use hwasp_tasks::hand::{DESIGN_LEN, SUBSTEPS, TransmissionDescription, names};
 
 /// Hand and object in MuJoCo. Implements [`Plant`]: efforts are the six joint torques and the motor's, commands the palm's
 /// motion and the motor's.
@@ -72,7 +19,15 @@ pub struct GraspPlant {
     pub(super) sim: Simulation,
     pub(super) places: Places,
     drive: Drive,
+    law: Law,
     transmission: TransmissionDescription,
+    /// The design that the hand has, SI.
+    design: [f64; DESIGN_LEN],
+    sensors: Sensors,
+    /// What the bench of this episode is like.
+    drawn: Drawn,
+    /// The most that the palm's target moves in a step, m.
+    palm_reach: f64,
     /// Standard deviations, as in the settings.
     sensor_noise: [f64; 2],
     actuation_noise: [f64; 2],
@@ -82,6 +37,10 @@ pub struct GraspPlant {
     object: Object,
     /// The palm's target, m.
     target: [f64; 3],
+    /// What of it the arm has followed, m.
+    followed: [f64; 3],
+    /// Where the spool is, m of tendon.
+    held: f64,
     /// Wound so far, m.
     travel: f64,
     /// The motor's torque in the last step, N·m.
@@ -95,12 +54,18 @@ pub struct GraspPlant {
 }
 
 impl GraspPlant {
-    pub(super) fn new(settings: &GraspSettings, sim: Simulation, drive: Drive) -> Result<Self, UnknownName> {
+    pub(super) fn new(settings: &GraspSettings, law: Law, sim: Simulation, drive: Drive) -> Result<Self, UnknownName> {
         let mut rng = Stream::seed_from_u64(0);
+        let period = settings.hand.step_time();
         Ok(Self {
             places: Places::look_up(&sim, &drive)?,
             sim,
             drive,
+            law,
+            design: [0.0; DESIGN_LEN],
+            sensors: Sensors::new(&settings.bench, period),
+            drawn: Drawn::default(),
+            palm_reach: settings.bench.palm_speed.map_or(f64::INFINITY, |speed| speed * period),
             transmission: settings.hand.transmission.clone(),
             sensor_noise: settings.sensor_noise,
             actuation_noise: settings.actuation_noise,
@@ -108,6 +73,8 @@ impl GraspPlant {
             axes: 3 - settings.palm.commands().len()..3,
             object: Object::draw(settings, 1.0, &mut rng),
             target: [0.0; 3],
+            followed: [0.0; 3],
+            held: 0.0,
             travel: 0.0,
             motor_torque: 0.0,
             noise: rng,
@@ -160,8 +127,14 @@ impl GraspPlant {
         touched
     }
 
-    /// Starts an episode: open hand above an object at rest.
-    pub(super) fn start(&mut self, object: Object, palm_height: f64, rng: &mut Stream) -> Result<(), EditError> {
+    /// Starts an episode at this fraction of training: open hand above an object at rest.
+    pub(super) fn start(
+        &mut self,
+        object: Object,
+        palm_height: f64,
+        progress: f64,
+        rng: &mut Stream,
+    ) -> Result<(), EditError> {
         let places = &self.places;
         object.enter(&mut self.sim, places.object_body, places.object_geom[0], places.floor)?;
         let state = self.sim.qpos_mut();
@@ -170,10 +143,13 @@ impl GraspPlant {
         for (&at, target) in places.palm.iter().zip(self.target) {
             state[at] = target;
         }
+        self.followed = self.target;
         self.object = object;
-        (self.travel, self.motor_torque, self.fault) = (0.0, 0.0, None);
+        (self.travel, self.held, self.motor_torque, self.fault) = (0.0, 0.0, 0.0, None);
         self.noise = Stream::seed_from_u64(rng.random());
-        self.look();
+        self.drawn = self.sensors.draw(progress, rng);
+        let reading = self.look();
+        self.sensors.start(reading, self.drawn.delay);
         Ok(())
     }
 
@@ -181,35 +157,79 @@ impl GraspPlant {
         std * self.noise.sample::<f64, _>(StandardNormal)
     }
 
-    /// Draws what sensors and motor are off until the next step.
-    fn look(&mut self) {
+    /// Draws what sensors and motor are off until the next step, and reads the sensors.
+    fn look(&mut self) -> Reading {
         self.travel_error = self.normal(self.actuation_noise[1]);
         for i in 0..6 {
             self.sensed[i] = self.normal(self.sensor_noise[0]);
         }
         self.sensed[6] = self.normal(self.sensor_noise[1]);
+        let off = |at: usize, values: [f64; 3]| [0, 1, 2].map(|i| values[i] + self.sensed[at + i]);
+        Reading {
+            palm: off(0, self.palm()),
+            object: off(3, self.object_position()),
+            commanded: self.travel + self.sensed[6],
+            encoder: self.held + self.sensed[6],
+            torque: self.motor_torque * self.drawn.torque_gain,
+        }
     }
 
-    /// Palm, object, bounding box, motor travel and torque, as the sensors tell them.
+    /// Palm, object, bounding box, motor travel and torque, as the controller is told them.
     pub(super) fn observe(&self, out: &mut [f64]) {
-        for (out, (value, off)) in
-            out.iter_mut().zip(self.palm().into_iter().chain(self.object_position()).zip(self.sensed))
-        {
-            *out = value + off;
-        }
+        let told = self.sensors.told();
+        out[..3].copy_from_slice(&told.palm);
+        out[3..6].copy_from_slice(&told.object);
         out[6..9].copy_from_slice(&self.object.bounding_box());
-        out[9] = self.travel + self.sensed[6];
-        out[10] = self.motor_torque;
+        out[9..11].copy_from_slice(&[told.travel, told.torque]);
+    }
+
+    /// The most that the tendons of this episode pull together, N.
+    fn limit(&self) -> f64 {
+        self.transmission.tension_limit * self.drawn.limit_gain
+    }
+
+    /// How much of the tendon is wound beyond the slack, m.
+    fn wound(&self) -> f64 {
+        (self.travel + self.travel_error).clamp(0.0, self.transmission.travel) - self.drawn.slack
+    }
+
+    /// What the digits have taken up of their tendons, m.
+    fn taken_up(&self) -> [f64; 3] {
+        let angle = |joint: usize| self.sim.qpos()[self.places.joints[joint]];
+        let of = |joint: usize| {
+            let kind = names::KIND_OF_JOINT[joint];
+            self.design[kind] * (angle(joint) - self.transmission.reference[kind])
+        };
+        [0, 1, 2].map(|digit| of(2 * digit) + of(2 * digit + 1))
+    }
+
+    /// The law's torques, where the motor's real limit is not the law's: all tensions are longer or shorter by one factor.
+    fn apply(&mut self, effort: &[f64]) {
+        let (limit, real) = (self.transmission.tension_limit, self.limit());
+        let factor = if real == limit {
+            1.0
+        } else {
+            let (_, tension) =
+                yielding(self.wound(), self.taken_up(), self.transmission.tendon_stiffness, f64::INFINITY);
+            if tension > 0.0 { tension.min(real) / tension.min(limit) } else { 1.0 }
+        };
+        for (joint, (&control, &torque)) in self.places.drive_ctrl.iter().zip(effort).enumerate() {
+            let kind = names::KIND_OF_JOINT[joint];
+            let spring = self.design[4 + kind] * (self.sim.qpos()[self.places.joints[joint]] + self.design[8 + kind]);
+            self.sim.ctrl_mut()[control] = if factor == 1.0 { torque } else { factor * (torque + spring) - spring };
+        }
+        self.motor_torque = (factor * effort[6]).clamp(0.0, self.transmission.spool_radius * real);
     }
 
     /// Winds the tendons of the simulation, each simulation step anew: the spool gives way where the motor's torque does not
     /// suffice to hold it.
     fn step_tendons(&mut self, tendons: [TendonId; 3]) -> Result<(), PhysicsFault> {
-        let TransmissionDescription { tendon_stiffness, tension_limit, spool_radius, travel, .. } = self.transmission;
-        let wound = (self.travel + self.travel_error).clamp(0.0, travel);
+        let TransmissionDescription { tendon_stiffness, spool_radius, .. } = self.transmission;
+        let (wound, limit) = (self.wound(), self.limit());
         for _ in 0..SUBSTEPS {
             let taut = tendons.map(|tendon| self.sim.tendon_length(tendon));
-            let (held, tension) = yielding(wound, taut, tendon_stiffness, tension_limit);
+            let (held, tension) = yielding(wound, taut, tendon_stiffness, limit);
+            self.held = held + self.drawn.slack;
             for &control in &self.places.drive_ctrl {
                 self.sim.ctrl_mut()[control] = held;
             }
@@ -237,13 +257,17 @@ fn yielding(wound: f64, mut taut: [f64; 3], stiffness: f64, limit: f64) -> (f64,
 impl Plant for GraspPlant {
     fn advance(&mut self, effort: &[f64], command: &[f64]) {
         let (motor, palm) = (command[command.len() - 1], &command[..command.len() - 1]);
+        let far = palm.iter().map(|motion| motion * motion).sum::<f64>().sqrt();
+        let share = if far > self.palm_reach { self.palm_reach / far } else { 1.0 };
         for (axis, motion) in self.axes.clone().zip(palm) {
             let [lo, hi] = WORKSPACE[axis];
-            self.target[axis] = (self.target[axis] + motion).clamp(lo, hi);
+            self.target[axis] = (self.target[axis] + share * motion).clamp(lo, hi);
         }
         for axis in 0..3 {
             let off = if self.axes.contains(&axis) { self.normal(self.actuation_noise[0]) } else { 0.0 };
-            self.sim.ctrl_mut()[self.places.palm_ctrl[axis]] = self.target[axis] + off;
+            let behind = self.target[axis] - self.followed[axis];
+            self.followed[axis] = self.target[axis] - self.drawn.behind * behind;
+            self.sim.ctrl_mut()[self.places.palm_ctrl[axis]] = self.followed[axis] + off;
         }
         for body in [self.places.palm_body, self.places.object_body] {
             let force = std::array::from_fn(|_| self.normal(self.disturbance[0]));
@@ -253,21 +277,25 @@ impl Plant for GraspPlant {
         self.travel = (self.travel + motor).clamp(0.0, self.transmission.travel);
         let stepped = match self.drive {
             Drive::Torques => {
-                for (&control, &torque) in self.places.drive_ctrl.iter().zip(effort) {
-                    self.sim.ctrl_mut()[control] = torque;
-                }
-                let most = self.transmission.spool_radius * self.transmission.tension_limit;
-                self.motor_torque = effort[6].clamp(0.0, most);
-                self.sim.step(SUBSTEPS)
+                self.apply(effort);
+                let stepped = self.sim.step(SUBSTEPS);
+                let stiffness = self.transmission.tendon_stiffness;
+                self.held = yielding(self.wound(), self.taken_up(), stiffness, self.limit()).0 + self.drawn.slack;
+                stepped
             }
             Drive::Tendons(tendons) => self.step_tendons(tendons),
         };
         self.fault = stepped.err();
-        self.look();
+        let reading = self.look();
+        self.sensors.read(reading);
+    }
+
+    fn set_design(&mut self, design: &[f64]) {
+        self.design.copy_from_slice(&self.law.as_built(design));
     }
 
     fn state(&self, out: &mut [f64]) {
-        out[0] = self.travel + self.travel_error;
+        out[0] = self.travel + self.travel_error - self.drawn.slack;
         for (out, &at) in out[1..].iter_mut().zip(&self.places.joints) {
             *out = self.sim.qpos()[at];
         }

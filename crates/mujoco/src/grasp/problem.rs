@@ -35,6 +35,7 @@ pub fn settings_of(task: &GraspTaskSettings) -> GraspSettings {
         palm: task.palm,
         hand: task.hand(),
         range: task.range.into(),
+        opening: task.law().opening,
         shapes: task.shapes.clone(),
         size: task.size,
         mass: task.mass,
@@ -46,12 +47,14 @@ pub fn settings_of(task: &GraspTaskSettings) -> GraspSettings {
         yaw: task.yaw,
         lying: task.lying,
         viewpoint: task.viewpoint,
+        bench: task.bench.clone(),
         sensor_noise: [task.position_noise, task.travel_noise],
         actuation_noise: [task.position_noise, task.travel_noise],
         disturbance: [task.disturbance_force, task.disturbance_torque],
         reward: GraspReward {
             distance: -task.distance_penalty,
             contact: task.contact_reward,
+            sideways: -task.sideways_penalty,
             ..GraspReward::default()
         },
         ..GraspSettings::default()

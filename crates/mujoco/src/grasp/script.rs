@@ -52,6 +52,7 @@ impl Script {
         let (law, transmission) = (grasp.law(), &grasp.settings().hand.transmission);
         let most = transmission.spool_radius * transmission.tension_limit;
         let (mut state, mut effort, mut total) = ([0.0; 7], [0.0; 7], 0.0);
+        robot.set_design(design);
         robot.reset(rng);
         self.start(robot.plant());
         loop {

@@ -4,8 +4,8 @@ use hwasp_core::{Initial, share_done};
 
 use super::GraspError;
 use hwasp_tasks::grasp::rules::{HORIZON, PALM_STEP};
-pub use hwasp_tasks::grasp::{Inertia, ShapeKind, Viewpoint};
-use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PalmMotion};
+pub use hwasp_tasks::grasp::{Bench, Inertia, ShapeKind, Viewpoint};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, KINDS_LEN, PalmMotion};
 
 /// The reward of a step: `distance`·|palm - object| + `contact`·C + f(height) (paper, appendix B; numbers \[M\]). The last is
 /// ours, and zero unless asked for.
@@ -17,6 +17,8 @@ pub struct GraspReward {
     pub contact: f64,
     /// Heights of the object's lowest point, m, rising, and what is given from there on.
     pub height: Vec<(f64, f64)>,
+    /// Per metre that the palm is told to move sideways.
+    pub sideways: f64,
     /// Per metre by which palm and object came nearer to each other, seen from above, in the step. Over an episode it adds up
     /// to what start and end differ by (shaping by a potential: Ng, Harada and Russell, ICML 1999).
     pub approach: f64,
@@ -28,6 +30,7 @@ impl Default for GraspReward {
             distance: -2.0,
             contact: 0.1,
             height: vec![(0.005, 0.5), (0.020, 1.0), (0.050, 2.0), (0.100, 4.0)],
+            sideways: 0.0,
             approach: 0.0,
         }
     }
@@ -58,6 +61,7 @@ impl Ramp {
 /// |---|---|---|---|
 /// | `palm` | vertical | Z-Grasp or 3D-Grasp | \[P\] |
 /// | `range`, `initial` | large, logit ±5 | limits and start of the design | \[M\] |
+/// | `opening` | none | what the springs open with at least, N·m | \[M\] |
 /// | `shapes` | all four | which objects there are | \[P\] |
 /// | `size` | 40 to 100 mm | each edge of the bounding box | \[P\] |
 /// | `mass` | 100 to 500 g | | \[P\] |
@@ -69,6 +73,7 @@ impl Ramp {
 /// | `load_ramp` | none | objects heavier by a factor while training goes on | \[M\] |
 /// | `yaw`, `lying` | 0, 0 | turned by up to ±, share of cylinders on their side | \[M\] |
 /// | `viewpoint` | world | from where the controller sees the object | \[P\] |
+/// | `bench` | the paper's simulation | what is sensed, how late, what the hand really does | \[M\] |
 /// | `sensor_noise` | 1 mm, 0.08 mm | palm and object position; motor travel | \[P\] |
 /// | `actuation_noise` | 1 mm, 0.08 mm | palm target; motor travel | \[P\] |
 /// | `disturbance` | 0.02 N, 0.002 N·m | on palm and object, redrawn each step | \[P\] |
@@ -83,6 +88,8 @@ pub struct GraspSettings {
     pub range: HandRange,
     /// Where the design begins.
     pub initial: [Initial; DESIGN_LEN],
+    /// What the springs of each kind of joint open with at least, N·m; none where hands may droop.
+    pub opening: Option<[f64; KINDS_LEN]>,
     /// Shapes of objects, at least one.
     pub shapes: Vec<ShapeKind>,
     /// Edges of the bounding box, from and to, m.
@@ -107,6 +114,8 @@ pub struct GraspSettings {
     pub lying: f64,
     /// From where the controller sees the object.
     pub viewpoint: Viewpoint,
+    /// What is sensed, how late, and what the hand really does.
+    pub bench: Bench,
     /// Standard deviations of the sensors: positions, m, and motor travel, m.
     pub sensor_noise: [f64; 2],
     /// Standard deviations of what the actuators do: palm, m, and motor travel, m. Never accumulates.
@@ -128,6 +137,7 @@ impl Default for GraspSettings {
             hand: HandDescription::default(),
             range: HandRange::Large,
             initial: [Initial::Logit { half_width: 5.0 }; DESIGN_LEN],
+            opening: None,
             shapes: ShapeKind::EACH.to_vec(),
             size: [0.040, 0.100],
             mass: [0.100, 0.500],
@@ -140,6 +150,7 @@ impl Default for GraspSettings {
             yaw: 0.0,
             lying: 0.0,
             viewpoint: Viewpoint::World,
+            bench: Bench::default(),
             sensor_noise: [1e-3, 8e-5],
             actuation_noise: [1e-3, 8e-5],
             disturbance: [0.02, 0.002],
@@ -170,6 +181,11 @@ impl GraspSettings {
             ("friction", self.friction, 0.0),
             ("inertia", inertia, 1e-9),
             ("height", self.height, 0.0),
+            ("bench.delay", self.bench.delay, 0.0),
+            ("bench.arm_lag", self.bench.arm_lag, 0.0),
+            ("bench.slack", self.bench.slack, 0.0),
+            ("bench.torque_gain", self.bench.torque_gain, 1e-3),
+            ("bench.limit_gain", self.bench.limit_gain, 1e-3),
         ] {
             if !(lo.is_finite() && hi.is_finite() && least <= lo && lo <= hi) {
                 return setting(

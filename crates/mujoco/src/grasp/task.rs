@@ -101,7 +101,7 @@ impl Task for GraspTask {
         self.taken = 0;
         let top = object.bounding_box()[2];
         // Settings were checked: what is drawn from them is a body.
-        let started = plant.start(object, top + above, rng);
+        let started = plant.start(object, top + above, self.progress, rng);
         debug_assert!(started.is_ok(), "{started:?}");
         self.beside = beside(plant.palm(), plant.object_position());
     }
@@ -125,7 +125,7 @@ impl Task for GraspTask {
         }
     }
 
-    fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {
+    fn reward(&mut self, plant: &GraspPlant, command: &[f64]) -> f64 {
         let (palm, object, clearance) = (plant.palm(), plant.object_position(), plant.clearance());
         let touching = plant.touching();
         let digit = |d: usize| touching[2 * d] || touching[2 * d + 1];
@@ -140,7 +140,8 @@ impl Task for GraspTask {
         let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
         let before = std::mem::replace(&mut self.beside, beside(palm, object));
         let nearer = reward.approach * (before - self.beside);
-        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer
+        let sideways = if let [x, y, _, _] = command { reward.sideways * x.hypot(*y) } else { 0.0 };
+        reward.distance * distance(palm, object) + reward.contact * distal as f64 + lifted + nearer + sideways
     }
 
     fn look(&mut self, plant: &GraspPlant) -> Option<Sight> {

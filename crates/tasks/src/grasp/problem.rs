@@ -8,8 +8,8 @@ use hwasp_problem::{AnyError, Built, Preset, Problem, Role, StandIn, StandInKind
 use super::env::env_spec;
 use super::manual::manual;
 use super::rules::{HORIZON, PALM_STEP};
-use super::{GraspTaskSettings, Viewpoint};
-use crate::hand::{DESIGN_LEN, PalmMotion, TendonHand, TendonHandSettings, names};
+use super::{GraspTaskSettings, ObjectSensed, TravelSensed, Viewpoint};
+use crate::hand::{DESIGN_LEN, PalmMotion, TendonHand, names};
 
 /// Which environments of a grasping problem are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,9 +76,7 @@ impl Problem for GraspProblem {
 
     fn build(&self, task: &GraspTaskSettings) -> Result<Built, AnyError> {
         let problem = *self;
-        let settings =
-            TendonHandSettings { palm: self.palm, range: task.range.into(), ..TendonHandSettings::default() };
-        let law = Law::new(TendonHand::new(&task.hand().transmission, &settings)?);
+        let law = Law::new(TendonHand::new(&task.hand().transmission, &task.law())?);
         let scene = |scene| world(problem, &law, task, scene);
         let (training, deployment) = (scene(Scene::Training), scene(Scene::Deployment));
         let (own, native_law) = (task.clone(), law.clone());
@@ -89,7 +87,7 @@ impl Problem for GraspProblem {
         };
         Ok(Built {
             effort_std: vec![Some(0.02); training.env.effort.len()],
-            words: words(self.palm, task.viewpoint),
+            words: words(task),
             manual: manual(task),
             mechanism: Some(Arc::new(task.hand())),
             stand_in: Some(StandIn { kind: StandInKind::NativeTendons, make: Arc::new(stand_in) }),
@@ -105,21 +103,33 @@ impl Problem for GraspProblem {
     }
 }
 
-fn words(palm: PalmMotion, viewpoint: Viewpoint) -> Words {
-    let motion = match palm {
+fn words(task: &GraspTaskSettings) -> Words {
+    let motion = match task.palm {
         PalmMotion::Vertical => "up and down",
         PalmMotion::Spatial => "in space",
     };
-    let place = match viewpoint {
-        Viewpoint::World => "the object's centre in the world",
-        Viewpoint::Palm => "the object's centre from the palm",
+    let place = match (task.viewpoint, task.bench.object_sensed) {
+        (Viewpoint::World, ObjectSensed::Tracked) => "the object's centre in the world",
+        (Viewpoint::World, ObjectSensed::Carried) => {
+            "the object's centre in the world: where it was at the start, and with the palm once the grasp is felt"
+        }
+        (Viewpoint::World, ObjectSensed::Fixed) => "the object's centre in the world at the start",
+        (Viewpoint::Palm, ObjectSensed::Tracked) => "the object's centre from the palm",
+        (Viewpoint::Palm, ObjectSensed::Carried) => {
+            "the object's centre from the palm: from where it was at the start, and unchanged once the grasp is felt"
+        }
+        (Viewpoint::Palm, ObjectSensed::Fixed) => "from the palm to where the object's centre was at the start",
+    };
+    let wound = match task.bench.travel_sensed {
+        TravelSensed::Commanded => "tendon wound so far, the sum of the commands",
+        TravelSensed::Encoder => "tendon on the spool, by the motor's encoder",
     };
     let axes = |name: &str, meaning: &'static str| ["x", "y", "z"].map(|axis| (format!("{name}_{axis}"), meaning));
     let mut seen = Vec::new();
     seen.extend(axes("palm", "the palm in the world, z upwards from the floor"));
     seen.extend(axes("object", place));
     seen.extend(axes("size", "the object's bounding box as it lies at the start"));
-    seen.push(("motor_travel".to_owned(), "tendon wound so far"));
+    seen.push(("motor_travel".to_owned(), wound));
     seen.push(("motor_torque".to_owned(), "torque of the motor in the last period"));
     let of_joints = |what: &str, meaning: &'static str| names::JOINTS.map(|joint| (format!("{joint}_{what}"), meaning));
     let mut read = vec![("motor_travel".to_owned(), "tendon wound so far")];

@@ -3,7 +3,8 @@
 use hwasp_core::Dimension;
 use hwasp_settings::{Fields, Item, Kind, Settings, choice};
 
-use crate::hand::{HandDescription, HandRange, PalmMotion};
+use super::bench::Bench;
+use crate::hand::{HandDescription, HandRange, PalmMotion, TendonHandSettings, opening_torques};
 
 /// The most shapes of a list, in which one may stand several times.
 const MOST_SHAPES: usize = 100;
@@ -76,6 +77,8 @@ pub struct GraspTaskSettings {
     pub range: HandRangeKind,
     /// The most the three tendons pull together, N.
     pub tension_limit: f64,
+    /// What the springs have to spare at every pose, palm down, N·m; none where hands may droop.
+    pub opening_margin: Option<f64>,
     /// Shapes of objects.
     pub shapes: Vec<ShapeKind>,
     /// Edges of the bounding box, from and to, m.
@@ -104,6 +107,8 @@ pub struct GraspTaskSettings {
     pub lying: f64,
     /// From where the controller sees the object.
     pub viewpoint: Viewpoint,
+    /// What is sensed, how late, and what the hand really does.
+    pub bench: Bench,
     /// Standard deviation of positions, sensed and reached, m.
     pub position_noise: f64,
     /// Of the motor's travel, m.
@@ -116,6 +121,8 @@ pub struct GraspTaskSettings {
     pub distance_penalty: f64,
     /// Reward of a step for each distal link that touches the object.
     pub contact_reward: f64,
+    /// Off the reward of a step, per metre that the palm is told to move sideways.
+    pub sideways_penalty: f64,
     /// Reward of training per metre by which the palm comes nearer to being above the object.
     pub approach_reward: f64,
 }
@@ -127,6 +134,7 @@ impl GraspTaskSettings {
             palm,
             range: HandRangeKind::Large,
             tension_limit: 75.0,
+            opening_margin: None,
             shapes: ShapeKind::EACH.to_vec(),
             size: [0.040, 0.100],
             mass: [0.1, 0.5],
@@ -141,12 +149,14 @@ impl GraspTaskSettings {
             yaw: 0.0,
             lying: 0.0,
             viewpoint: Viewpoint::World,
+            bench: Bench::default(),
             position_noise: 1e-3,
             travel_noise: 8e-5,
             disturbance_force: 0.02,
             disturbance_torque: 0.002,
             distance_penalty: 2.0,
             contact_reward: 0.1,
+            sideways_penalty: 0.0,
             approach_reward: 0.0,
         }
     }
@@ -157,6 +167,12 @@ impl GraspTaskSettings {
         hand.transmission.tension_limit = self.tension_limit;
         hand
     }
+
+    /// What of its law can be chosen.
+    pub fn law(&self) -> TendonHandSettings {
+        let opening = self.opening_margin.map(|margin| opening_torques(&self.hand(), margin));
+        TendonHandSettings { palm: self.palm, range: self.range.into(), opening, ..TendonHandSettings::default() }
+    }
 }
 
 impl Settings for GraspTaskSettings {
@@ -165,6 +181,10 @@ impl Settings for GraspTaskSettings {
         fields.choice("range", &mut self.range, "limits of the twelve parameters");
         let about = "the most the three tendons pull together; 163 N is the easy variant";
         fields.quantity("tension_limit", &mut self.tension_limit, Dimension::Force, 1.0..=1000.0, about);
+        let about = "torque that the springs have to spare at every pose with the palm down; preloads and stiffnesses that are too \
+                     small for it are built as those that suffice";
+        let example = (Dimension::Torque, 1e-3);
+        fields.optional_quantity("opening_margin", &mut self.opening_margin, example, 0.0..=0.02, about);
         fields.choices(
             "shapes",
             &mut self.shapes,
@@ -190,6 +210,7 @@ impl Settings for GraspTaskSettings {
         fields.number("lying", &mut self.lying, 0.0..=1.0, "share of cylinders that lie on their side");
         let about = "where the observed object is: in the `world`, as in the paper, or relative to the `palm`";
         fields.choice("viewpoint", &mut self.viewpoint, about);
+        self.bench.fields(fields);
         let about = "standard deviation of sensed positions and of the palm's target";
         fields.quantity("position_noise", &mut self.position_noise, length, 0.0..=0.05, about);
         fields.quantity("travel_noise", &mut self.travel_noise, length, 0.0..=0.005, "the same of the motor's travel");
@@ -200,6 +221,8 @@ impl Settings for GraspTaskSettings {
         fields.number("distance_penalty", &mut self.distance_penalty, 0.0..=1000.0, about);
         let about = "reward of a step for each distal link that touches the object";
         fields.number("contact_reward", &mut self.contact_reward, 0.0..=1000.0, about);
+        let about = "off the reward of a step, per metre that the palm is told to move sideways in it";
+        fields.number("sideways_penalty", &mut self.sideways_penalty, 0.0..=1e5, about);
         let about = "in training only: reward per metre by which the palm comes nearer to being above the object, off it when the \
                      palm leaves";
         fields.number("approach_reward", &mut self.approach_reward, 0.0..=1e5, about);

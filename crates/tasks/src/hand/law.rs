@@ -4,9 +4,9 @@ use hwasp_core::{DesignSpace, Hardware, Initial, Ports};
 use hwasp_diff::Scalar;
 
 use super::description::TransmissionDescription;
-use super::error::HandError;
+use super::error::{HandError, within};
 use super::names::{JOINTS, KIND_OF_JOINT};
-use super::space::{DESIGN_LEN, HandRange};
+use super::space::{DESIGN_LEN, HandRange, KINDS_LEN};
 
 /// How the palm may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,6 +35,7 @@ impl PalmMotion {
 /// | `palm` | vertical | which palm commands stand before the motor's | |
 /// | `range` | large | limits of the twelve parameters | lo < hi |
 /// | `initial` | logit ±5 | where each parameter begins | inside of its limits |
+/// | `opening` | none | what the springs of each kind of joint open with at least, N·m: [`opening_torques`](super::opening_torques) | within what the limits allow |
 #[derive(Clone, Debug, PartialEq)]
 pub struct TendonHandSettings {
     /// Which palm commands there are. The law passes them by.
@@ -43,6 +44,8 @@ pub struct TendonHandSettings {
     pub range: HandRange,
     /// Where they begin.
     pub initial: [Initial; DESIGN_LEN],
+    /// The least torque, N·m, with which the springs of each kind of joint hold it open.
+    pub opening: Option<[f64; KINDS_LEN]>,
 }
 
 impl Default for TendonHandSettings {
@@ -51,6 +54,7 @@ impl Default for TendonHandSettings {
             palm: PalmMotion::default(),
             range: HandRange::default(),
             initial: [Initial::Logit { half_width: 5.0 }; DESIGN_LEN],
+            opening: None,
         }
     }
 }
@@ -72,11 +76,44 @@ impl Default for TendonHandSettings {
 /// The tension of a digit is f = `k_tend`·max(0, x + Δx - Σ r·(θ - `theta_ref`)), with x + Δx limited to the spool's travel:
 /// the paper's law, except that a tendon does not push. If the three exceed the motor's tension limit together, all are
 /// scaled down to it.
+///
+/// Where springs have to open with a least torque, a preload that is too small for it counts as the one that suffices, and where
+/// that would be beyond its limit the spring counts as stiffer, too: such hands are built, and the gradient knows it.
 #[derive(Clone, Debug)]
 pub struct TendonHand {
     transmission: TransmissionDescription,
     palm: PalmMotion,
     design: DesignSpace,
+    opening: Option<Opening>,
+}
+
+/// What the springs of the four kinds of joints open with at least.
+#[derive(Clone, Copy, Debug)]
+struct Opening {
+    /// N·m.
+    torque: [f64; KINDS_LEN],
+    /// The stiffness with which the largest preload suffices, N·m/rad.
+    stiffness: [f64; KINDS_LEN],
+}
+
+impl Opening {
+    fn new(torque: [f64; KINDS_LEN], range: &HandRange) -> Result<Self, HandError> {
+        let bounds = range.bounds();
+        let mut stiffness = [0.0; KINDS_LEN];
+        for kind in 0..KINDS_LEN {
+            let (stiffest, most) = (bounds[4 + kind].1, bounds[8 + kind].1);
+            within("opening torque", torque[kind], 0.0, stiffest * most, "N·m")?;
+            stiffness[kind] = torque[kind] / most;
+        }
+        Ok(Self { torque, stiffness })
+    }
+
+    /// Stiffness and preload of a joint as it is built.
+    #[inline]
+    fn springs<T: Scalar>(&self, kind: usize, stiffness: T, preload: T) -> (T, T) {
+        let stiffness = stiffness.max(T::constant(self.stiffness[kind]));
+        (stiffness, preload.max(T::constant(self.torque[kind]) / stiffness))
+    }
 }
 
 impl TendonHand {
@@ -87,7 +124,15 @@ impl TendonHand {
             transmission: transmission.clone(),
             palm: settings.palm,
             design: settings.range.space(&settings.initial)?,
+            opening: settings.opening.map(|torque| Opening::new(torque, &settings.range)).transpose()?,
         })
+    }
+
+    /// Stiffness and preload of the springs of a kind of joint as they are built.
+    #[inline]
+    fn springs<T: Scalar>(&self, design: &[T], kind: usize) -> (T, T) {
+        let (stiffness, preload) = (design[4 + kind], design[8 + kind]);
+        self.opening.map_or((stiffness, preload), |opening| opening.springs(kind, stiffness, preload))
     }
 
     /// The tensions, N, of thumb, first and second finger: `step` and `travel` in m, the six `angles` in rad.
@@ -131,13 +176,22 @@ impl Hardware for TendonHand {
 
     #[inline]
     fn effort<T: Scalar>(&self, design: &[T], command: &[T], state: &[T], effort: &mut [T]) {
-        let (radius, stiffness, preload) = (&design[..4], &design[4..8], &design[8..12]);
         let (travel, angles) = (state[0], &state[1..7]);
         let tensions = self.tensions(design, command[self.palm.commands().len()], travel, angles);
+        let springs = [0, 1, 2, 3].map(|kind| self.springs(design, kind));
         for (joint, &kind) in KIND_OF_JOINT.iter().enumerate() {
+            let (stiffness, preload) = springs[kind];
             // Equation of joint torques (appendix B).
-            effort[joint] = tensions[joint / 2] * radius[kind] - stiffness[kind] * (angles[joint] + preload[kind]);
+            effort[joint] = tensions[joint / 2] * design[kind] - stiffness * (angles[joint] + preload);
         }
         effort[6] = (tensions[0] + tensions[1] + tensions[2]) * self.transmission.spool_radius;
+    }
+
+    fn as_built(&self, design: &[f64]) -> Vec<f64> {
+        let mut built = design.to_vec();
+        for kind in 0..KINDS_LEN {
+            (built[4 + kind], built[8 + kind]) = self.springs(design, kind);
+        }
+        built
     }
 }

@@ -6,6 +6,9 @@ use hwasp_core::{DesignError, DesignGroup, DesignSpace, Dimension, Initial};
 /// of [`KINDS`](super::names::KINDS).
 pub const DESIGN_LEN: usize = 12;
 
+/// Kinds of joints: those of the thumb, and those that the two fingers share.
+pub const KINDS_LEN: usize = 4;
+
 /// What the paper's HWasP found (table 2).
 pub const PAPER_HWASP: [f64; DESIGN_LEN] =
     [0.0100, 0.0075, 0.0030, 0.0026, 0.0062, 0.0061, 0.0061, 0.0059, 2.0, 1.5, 1.9, 1.1];

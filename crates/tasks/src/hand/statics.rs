@@ -2,7 +2,7 @@
 
 use super::description::{FingerDescription, HandDescription};
 use super::error::{HandError, positive};
-use super::space::DESIGN_LEN;
+use super::space::{DESIGN_LEN, KINDS_LEN};
 
 /// A digit under its own weight, palm down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +32,13 @@ pub fn droop(hand: &HandDescription, design: &[f64; DESIGN_LEN], finger: bool) -
         gravity: [hand.gravity * of_both, hand.gravity * of_distal],
         springs: [first, first + 1].map(|kind| design[4 + kind] * (open + design[8 + kind])),
     }
+}
+
+/// What the springs of the four kinds of joints have to open with, N·m, so that `margin`, N·m, is left at every pose with the palm
+/// down. An open digit leans outward, where its weight closes it most; further on springs only gain and the weight only loses.
+pub fn opening_torques(hand: &HandDescription, margin: f64) -> [f64; KINDS_LEN] {
+    let [thumb, finger] = [false, true].map(|finger| droop(hand, &[0.0; DESIGN_LEN], finger).gravity);
+    [thumb[0], thumb[1], finger[0], finger[1]].map(|weight| weight + margin)
 }
 
 fn digit_of(hand: &HandDescription, finger: bool) -> (&FingerDescription, usize) {

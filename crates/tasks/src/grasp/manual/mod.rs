@@ -18,7 +18,7 @@ pub(super) fn manual(task: &GraspTaskSettings) -> Manual {
         motors: ports::motors(task, &hand),
         topics: vec![
             hand::period(&hand),
-            bench::bench(),
+            bench::topic(&task.bench),
             hand::transmission(&hand.transmission),
             hand::palm(&hand.palm),
             scene::start(task),
@@ -35,7 +35,7 @@ mod tests {
     use hwasp_problem::Told;
 
     use super::*;
-    use crate::grasp::env_spec;
+    use crate::grasp::{ObjectSensed, env_spec};
     use crate::hand::PalmMotion;
 
     #[test]
@@ -56,11 +56,14 @@ mod tests {
     fn the_settings_are_told() {
         let mut task = GraspTaskSettings::new(PalmMotion::Spatial);
         (task.mass, task.offset, task.position_noise, task.tension_limit) = ([0.2, 0.3], 0.07, 0.0, 60.0);
+        (task.bench.object_sensed, task.bench.palm_speed) = (ObjectSensed::Carried, Some(0.1));
         let manual = manual(&task);
         let told = |topic: &str, fact: &str| {
             let topic = manual.topics.iter().find(|known| known.name == topic).unwrap();
             topic.facts.iter().find(|known| known.name == fact).unwrap().told.clone()
         };
+        assert_eq!(told("bench", "object_sensed"), Told::Text("carried".to_owned()));
+        assert_eq!((told("bench", "grasp_felt"), told("bench", "palm_speed")), (Told::Value(0.3), Told::Value(0.1)));
         assert_eq!(told("objects", "mass"), Told::Range([0.2, 0.3]));
         assert_eq!(told("start", "object_x"), Told::Range([-0.07, 0.07]));
         assert_eq!(told("transmission", "tension_limit"), Told::Value(60.0));

@@ -3,7 +3,7 @@
 use hwasp_problem::{Motor, Sensor, Target};
 
 use crate::grasp::rules::WORKSPACE;
-use crate::grasp::{GraspTaskSettings, Viewpoint};
+use crate::grasp::{GraspTaskSettings, ObjectSensed, TravelSensed, Viewpoint};
 use crate::hand::{HandDescription, PalmMotion};
 
 /// The frames' names.
@@ -16,9 +16,16 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// In the order of the observation.
 pub(super) fn sensors(task: &GraspTaskSettings) -> Vec<Sensor> {
     let end = "at the end of the period before; first before the first command";
+    let seen = match task.bench.object_sensed {
+        ObjectSensed::Tracked => end,
+        ObjectSensed::Carried => {
+            "before the first command, and with the palm from when the grasp is felt (bench: `object_sensed`)"
+        }
+        ObjectSensed::Fixed => "once, before the first command",
+    };
     let (place, read) = match task.viewpoint {
-        Viewpoint::World => (WORLD, end.to_owned()),
-        Viewpoint::Palm => (PALM, format!("{end}; in the world, and what the palm's sensors read is taken off")),
+        Viewpoint::World => (WORLD, seen.to_owned()),
+        Viewpoint::Palm => (PALM, format!("{seen}; in the world, and what the palm's sensors read is taken off")),
     };
     let three = |name: &str, frame: &str, sampled: &str, noise: f64| {
         AXES.map(|axis| Sensor {
@@ -38,8 +45,11 @@ pub(super) fn sensors(task: &GraspTaskSettings) -> Vec<Sensor> {
     sensors.extend(three("palm", WORLD, end, task.position_noise));
     sensors.extend(three("object", place, &read, task.position_noise));
     sensors.extend(three("size", OBJECT, "once, before the start", 0.0));
-    let summed = "after the commands of the period before were added up; 0 before the first one";
-    sensors.push(motor("travel", summed, task.travel_noise));
+    let travel = match task.bench.travel_sensed {
+        TravelSensed::Commanded => "after the commands of the period before were added up; 0 before the first one",
+        TravelSensed::Encoder => end,
+    };
+    sensors.push(motor("travel", travel, task.travel_noise));
     let torque =
         "in the last simulation step of the period before (a motor: at the period's end); 0 before the first command";
     sensors.push(motor("torque", torque, 0.0));

@@ -1,4 +1,10 @@
-//! What a caller of the exported controller has to know: names, shapes, units, rates, limits.
+//! What a caller of the exported controller has to know: names, shapes, units, rates, limits, frames, what becomes of commands,
+//! where an episode starts and what counts as success.
+//!
+//! `HWASP_WRITE_DOCS=1 cargo test -p hwasp-export --lib` writes `docs/contract.schema.json` anew from these types.
+
+#[cfg(test)]
+mod tests;
 
 use hwasp_core::{Dimension, Port};
 use hwasp_diff::Activation;
@@ -9,6 +15,7 @@ use serde::Serialize;
 use crate::deployed::Deployed;
 use crate::error::ExportError;
 use crate::file::ExportFile;
+use crate::manual::{Described, MotorEntry, SensorEntry, TopicEntry, frames, motor, sensor, topics};
 use crate::model::Models;
 
 /// The sidecar of every exported controller.
@@ -16,33 +23,71 @@ pub(super) const CONTRACT: &str = "contract.json";
 
 /// The contract. Every quantity is in the SI unit that stands beside it.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct Contract {
     format: &'static str,
     hwasp_version: &'static str,
     experiment: String,
     task: String,
+    /// The robot, its purpose and what of it is designed.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    about: String,
     method: &'static str,
     seed: u64,
     control: Control,
     network: Network,
+    /// The frames that positions are told in.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    frames: Vec<Described>,
+    /// In order.
     observation: Vec<Observed>,
+    /// What only the law reads.
     state: Vec<Quantity>,
+    /// In order.
     command: Vec<Commanded>,
     effort: Vec<Quantity>,
     design: Vec<Designed>,
+    /// What else there is to know of the problem, by subject.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    manual: Vec<TopicEntry>,
     pub(super) models: Models,
 }
 
 /// How often the controller acts.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Control {
     period_s: f64,
     rate_hz: f64,
     /// Steps of an episode in training and evaluation.
     horizon_steps: usize,
+    /// What a command is between two periods.
+    between: &'static str,
+    /// What to do where something is wrong.
+    faults: Vec<Described>,
 }
 
+/// What to do where something is wrong: the same for every controller.
+const FAULTS: [(&str, &str); 3] = [
+    (
+        "not finite",
+        "an observation that is NaN or infinite gives commands that are NaN or mean nothing: look before asking, and take it for a \
+         missing one; give no command that is not finite to a motor",
+    ),
+    (
+        "missing",
+        "in training nothing was ever missing: give the last whole observation again for a few periods at most, then every \
+         command's `hold` where it has one, and stop",
+    ),
+    (
+        "out of range",
+        "the network was trained on observations within a few `scale` of `center`: far beyond, its commands mean nothing, though \
+         they are within their limits",
+    ),
+];
+
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Network {
     /// Inputs, hidden layers, outputs.
     sizes: Vec<usize>,
@@ -52,6 +97,7 @@ struct Network {
 
 /// Something with a name and a unit.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Quantity {
     name: String,
     unit: &'static str,
@@ -61,9 +107,12 @@ struct Quantity {
 
 /// What the controller sees; it works with (observation - center)/scale, within plus or minus the clip where there is one.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Observed {
     #[serde(flatten)]
     quantity: Quantity,
+    #[serde(flatten)]
+    sensor: Option<SensorEntry>,
     center: f64,
     scale: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -72,9 +121,12 @@ struct Observed {
 
 /// What the controller says: the network's output times scale, plus offset, within limits.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Commanded {
     #[serde(flatten)]
     quantity: Quantity,
+    #[serde(flatten)]
+    motor: Option<MotorEntry>,
     limits: [f64; 2],
     scale: f64,
     offset: f64,
@@ -82,6 +134,7 @@ struct Commanded {
 
 /// A parameter of the hardware, as built.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Designed {
     name: String,
     unit: &'static str,
@@ -92,7 +145,8 @@ struct Designed {
 impl Contract {
     pub(super) fn new(deployed: &Deployed) -> Self {
         let Deployed { spec, env, design, .. } = deployed;
-        let (policy, words) = (deployed.policy.spec(), &spec.task.built().words);
+        let (policy, built) = (deployed.policy.spec(), spec.task.built());
+        let (words, manual) = (&built.words, &built.manual);
         let quantity = |role, name: &str, dimension: Dimension| Quantity {
             name: name.to_owned(),
             unit: dimension.si(),
@@ -106,6 +160,7 @@ impl Contract {
         let observed = all(Role::Observation, &env.observation).into_iter().zip(scaling);
         let commanded = env.command.iter().map(|port| Commanded {
             quantity: quantity(Role::Command, &port.name, port.dimension),
+            motor: motor(manual, &port.name, [port.lo, port.hi], env.time_step),
             limits: [port.lo, port.hi],
             scale: 0.5 * (port.hi - port.lo),
             offset: 0.5 * (port.hi + port.lo),
@@ -118,16 +173,27 @@ impl Contract {
             hwasp_version: env!("CARGO_PKG_VERSION"),
             experiment: spec.name.clone(),
             task: spec.task.name().to_owned(),
+            about: words.about.clone(),
             method: spec.method.name(),
             seed: spec.seed,
-            control: Control { period_s: env.time_step, rate_hz: 1.0 / env.time_step, horizon_steps: env.horizon },
+            control: Control {
+                period_s: env.time_step,
+                rate_hz: 1.0 / env.time_step,
+                horizon_steps: env.horizon,
+                between: "the last command is held",
+                faults: FAULTS.map(|(name, meaning)| Described { name: name.into(), meaning: meaning.into() }).into(),
+            },
             network: Network {
                 sizes: deployed.policy.controller().sizes().to_vec(),
                 hidden_activation: activation_name(policy.activation),
                 output_activation: activation_name(deployed.output_activation()),
             },
+            frames: frames(manual),
             observation: observed
-                .map(|(quantity, (&center, &scale))| Observed { quantity, center, scale, clip })
+                .map(|(quantity, (&center, &scale))| {
+                    let sensor = sensor(manual, &quantity.name);
+                    Observed { quantity, sensor, center, scale, clip }
+                })
                 .collect(),
             state: all(Role::State, &env.state),
             command: commanded.collect(),
@@ -135,6 +201,7 @@ impl Contract {
             design: designed
                 .map(|(i, ((name, unit), &value))| Designed { name, unit, limits: space.bounds(i).into(), value })
                 .collect(),
+            manual: topics(manual),
             models: Models::new(env),
         }
     }

@@ -13,6 +13,7 @@ mod export;
 mod file;
 mod folder;
 mod kind;
+mod manual;
 mod model;
 mod onnx;
 mod printed;

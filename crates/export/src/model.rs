@@ -12,6 +12,7 @@ pub(super) const EFFORT: &str = "effort";
 
 /// What is exported.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct Models {
     /// Observation to command.
     pub(super) controller: Model,
@@ -21,6 +22,7 @@ pub(super) struct Models {
 
 /// A function of tensors.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct Model {
     pub(super) about: &'static str,
     pub(super) arithmetic: &'static str,
@@ -30,6 +32,7 @@ pub(super) struct Model {
 
 /// The type of a tensor's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ElementType {
     Float32,
@@ -38,6 +41,7 @@ pub(super) enum ElementType {
 
 /// An input or output: rows of the quantities that the contract lists under the same name.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct TensorSpec {
     pub(super) name: &'static str,
     #[serde(rename = "type")]

@@ -37,6 +37,7 @@ mod corners;
 mod delay;
 mod environment;
 mod held;
+mod manual;
 mod names;
 mod parameter;
 mod problem;

@@ -10,6 +10,7 @@ use hwasp_problem::{
 use hwasp_settings::Folder;
 
 use crate::environment::ModelEnvironments;
+use crate::manual::manual;
 use crate::robot::Robot;
 use crate::settings::ModelSettings;
 
@@ -61,6 +62,7 @@ impl Problem for ModelProblem {
         built.files = Arc::clone(&settings.files);
         built.effort_std = effort_std(robot);
         built.words = words(settings, robot);
+        built.manual = manual(settings, robot);
         Ok(built)
     }
 }

@@ -6,6 +6,7 @@ use hwasp_core::{Law, MakeEnvironment};
 use hwasp_settings::Files;
 
 use crate::error::AnyError;
+use crate::manual::Manual;
 use crate::mechanism::Mechanism;
 use crate::words::Words;
 use crate::world::World;
@@ -45,6 +46,8 @@ pub struct Built {
     pub effort_std: Vec<Option<f64>>,
     /// What problem and ports are called in exports and reports.
     pub words: Words,
+    /// What somebody has to know who puts its controller to work.
+    pub manual: Manual,
     /// What is built of the law: parts, shapes, statics.
     pub mechanism: Option<Arc<dyn Mechanism>>,
     /// The world that stands in for the built robot.
@@ -71,6 +74,7 @@ impl Built {
             optimum,
             effort_std,
             words,
+            manual: Manual::default(),
             mechanism: None,
             stand_in: None,
             files: Arc::default(),

@@ -48,6 +48,7 @@
 
 mod built;
 mod error;
+mod manual;
 mod mechanism;
 mod problem;
 mod words;
@@ -55,6 +56,7 @@ mod world;
 
 pub use built::{Built, MakeWorld, StandIn, StandInKind};
 pub use error::{AnyError, FaultsTold};
+pub use manual::{Fact, Frame, Manual, Motor, Sensor, Target, Told, Topic};
 pub use mechanism::{Changed, Mechanism, ModelFile, ModelFormat};
 pub use problem::{AnyProblem, Preset, Problem};
 pub use words::{Role, Words};

@@ -1,13 +1,6 @@
 //! When an object counts as held.
 
-/// The steps at the end of an episode over which a grasp has to hold.
-pub const HOLD_STEPS: usize = 100;
-/// How high the object's lowest point has to be over all of them, m.
-pub const HOLD_HEIGHT: f64 = 0.100;
-/// The share of them in which thumb and a finger have to touch the object.
-pub const HOLD_TOUCH: f64 = 0.9;
-/// How far the object may move relative to the palm over them, m.
-pub const HOLD_DRIFT: f64 = 0.010;
+use hwasp_tasks::grasp::rules::{HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 
 /// One step of the hold.
 #[derive(Clone, Copy, Debug, Default)]

@@ -56,7 +56,7 @@ pub use plant::{GraspPlant, yielding};
 pub use problem::{engine, settings_of};
 pub use script::Script;
 pub use settings::{Bench, GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};
-pub use task::{GraspTask, HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
+pub use task::GraspTask;
 
 use crate::engine::{BuildError, Simulation, UnknownName};
 use hwasp_tasks::hand::{self, DESIGN_LEN, HandError, MjcfOptions, TendonHand, TendonHandSettings, mjcf, names};

@@ -9,10 +9,8 @@ use super::places::{Drive, Places};
 use super::sensors::{Drawn, Reading, Sensors};
 use super::settings::GraspSettings;
 use crate::engine::{EditError, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
+use hwasp_tasks::grasp::rules::WORKSPACE;
 use hwasp_tasks::hand::{DESIGN_LEN, SUBSTEPS, TransmissionDescription, names};
-
-/// Where the palm's target may be, m: from here to there in x, y and z.
-const WORKSPACE: [[f64; 2]; 3] = [[-0.15, 0.15], [-0.15, 0.15], [0.02, 0.60]];
 
 /// Hand and object in MuJoCo. Implements [`Plant`]: efforts are the six joint torques and the motor's, commands the palm's
 /// motion and the motor's.

@@ -3,6 +3,7 @@
 use hwasp_core::{Initial, share_done};
 
 use super::GraspError;
+use hwasp_tasks::grasp::rules::{HORIZON, PALM_STEP};
 pub use hwasp_tasks::grasp::{Bench, Inertia, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, KINDS_LEN, PalmMotion};
 
@@ -153,9 +154,9 @@ impl Default for GraspSettings {
             sensor_noise: [1e-3, 8e-5],
             actuation_noise: [1e-3, 8e-5],
             disturbance: [0.02, 0.002],
-            palm_step: 0.002,
+            palm_step: PALM_STEP,
             reward: GraspReward::default(),
-            horizon: 500,
+            horizon: HORIZON,
         }
     }
 }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use hwasp_core::{EnvSpec, Outcome, Sight, Stream, Task};
 use rand::RngExt;
 
-pub use super::hold::{HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
 use super::hold::{Hold, distance};
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
 use crate::engine::View;
 use hwasp_tasks::grasp::env_spec;
+use hwasp_tasks::grasp::rules::HOLD_HEIGHT;
 
 /// What a row of stills shows: the last two are half of what success asks for, and all of it.
 const MOMENTS: [&str; 4] = ["contact", "lifted", "raised 5 cm", "raised 10 cm"];

@@ -4,7 +4,9 @@
 mod bench;
 mod carried;
 mod env;
+mod manual;
 mod problem;
+pub mod rules;
 mod settings;
 
 pub use bench::{Bench, ObjectSensed, TravelSensed};

@@ -6,13 +6,10 @@ use hwasp_core::{Law, MakeEnvironment};
 use hwasp_problem::{AnyError, Built, Preset, Problem, Role, StandIn, StandInKind, Words, World};
 
 use super::env::env_spec;
+use super::manual::manual;
+use super::rules::{HORIZON, PALM_STEP};
 use super::{GraspTaskSettings, ObjectSensed, TravelSensed, Viewpoint};
 use crate::hand::{DESIGN_LEN, PalmMotion, TendonHand, names};
-
-/// Steps of an episode, 10 ms each (paper, appendix B).
-const HORIZON: usize = 500;
-/// Motion of the palm in a step, ± m.
-const PALM_STEP: f64 = 0.002;
 
 /// Which environments of a grasping problem are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +88,7 @@ impl Problem for GraspProblem {
         Ok(Built {
             effort_std: vec![Some(0.02); training.env.effort.len()],
             words: words(task),
+            manual: manual(task),
             mechanism: Some(Arc::new(task.hand())),
             stand_in: Some(StandIn { kind: StandInKind::NativeTendons, make: Arc::new(stand_in) }),
             ..Built::of(training, deployment)

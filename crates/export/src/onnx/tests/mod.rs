@@ -234,6 +234,21 @@ fn a_law_without_a_state_and_no_law() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Whoever has one model alone has all of the contract.
+#[test]
+fn the_contract_is_in_both_models() {
+    for experiment in ["z-grasp", "mass-spring", "hopper"] {
+        let deployed = deployed(experiment, "hwasp", &[]);
+        let file = Contract::new(&deployed).file().unwrap();
+        let told: serde_json::Value = serde_json::from_slice(&file.contents).unwrap();
+        for model in written(&deployed) {
+            let [metadata] = &model.metadata_props[..] else { panic!("{:?}", model.metadata_props) };
+            assert_eq!(metadata.key, "contract");
+            assert_eq!(serde_json::from_str::<serde_json::Value>(&metadata.value).unwrap(), told);
+        }
+    }
+}
+
 #[test]
 fn what_a_model_says_of_itself() {
     let deployed = deployed("pendulum", "hwasp", &[]);

@@ -1,6 +1,7 @@
 //! The parts list as files and programs have it. Everything is in SI units.
 
-use hwasp_tasks::hand::{DESIGN_LEN, SeatedSpring, Workshop};
+use hwasp_fabrication::{SeatedSpring, Workshop};
+use hwasp_tasks::hand::DESIGN_LEN;
 use hwasp_training::{Change, Evaluation};
 use serde::{Deserialize, Serialize};
 

@@ -17,10 +17,10 @@ use std::path::Path;
 use crate::design::hand_of;
 use crate::folder::writable;
 use hwasp_core::Executor;
+pub use hwasp_fabrication::{SeatedSpring, Workshop};
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{RunError, encode, io_error};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
-pub use hwasp_tasks::hand::{SeatedSpring, Workshop};
 use hwasp_training::{AssembleError, Assembly, EvaluateError, Reference, TrainError};
 use thiserror::Error;
 

@@ -6,10 +6,8 @@ mod walls;
 
 use std::f64::consts::PI;
 
-use hwasp_tasks::hand::{
-    DESIGN_LEN, HandDescription, HandRange, Mesh, PAPER_HWASP, Part, SEARCHED, SMALL_CENTRE, SeatedSpring, Workshop,
-    parts,
-};
+use hwasp_fabrication::{Mesh, Part, SeatedSpring, Workshop, parts};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, PAPER_HWASP, SEARCHED, SMALL_CENTRE};
 use proptest::prelude::*;
 
 /// Those of the shipped hand.

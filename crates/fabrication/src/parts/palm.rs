@@ -1,10 +1,16 @@
-//! The palm: its box, with a pocket and two lugs for each digit, and a way for its line.
+//! The palm: its box, hollowed, with a pocket and two lugs for each digit, a way for each line, and what is screwed on it.
 
-use super::super::description::{FingerDescription, HandDescription};
-use super::super::solid::{Layer, Outline, disc, hole, polygon, rectangle};
-use super::super::space::DESIGN_LEN;
+use hwasp_tasks::hand::{DESIGN_LEN, FingerDescription, HandDescription};
+
 use super::link::{fixed_legs, stop};
+use super::mount::{CLIP_ROOM, NUT, NUT_UNDER, POSTS, SCREW, WELL};
 use super::{Layout, between};
+use crate::solid::{Layer, Outline, disc, hole, polygon, rectangle};
+
+/// Between the palm's outside and its hollows, and between these and pockets, m.
+const SKIN: f64 = 3e-3;
+/// More than any part is large, m.
+const FAR: f64 = 1.0;
 
 pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout: &Layout<'_>) -> Vec<Layer> {
     let [half_x, half_y, half_z] = hand.palm.half_size;
@@ -20,8 +26,12 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
             [layout.channel(), layout.cheek(), end(digit, side)].map(|height| digit.base[0] + side * height)
         })
     });
-    between(heights.chain([-half_x, half_x]).collect(), |x| {
+    let hollows = hollows(hand, layout);
+    let of_hollows = hollows.iter().flat_map(|hollow| hollow.x.into_iter().flat_map(|x| [-x, x]));
+    let heights = heights.chain(of_hollows).filter(|x| x.abs() < half_x).chain([-half_x, half_x]);
+    between(heights.collect(), |x| {
         let (mut add, mut cut) = (vec![body.clone()], Vec::new());
+        cut.extend(hollows.iter().filter(|hollow| hollow.has(x)).map(|hollow| hollow.outline.clone()));
         for (digit, kind) in digits() {
             let (outward, from_digit) = (digit.outward(), x - digit.base[0]);
             let away = from_digit.abs();
@@ -47,6 +57,55 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
         }
         (add, cut)
     })
+}
+
+/// A part of the palm that is left out, on both sides of its middle.
+struct Hollow {
+    /// Between these distances from the middle.
+    x: [f64; 2],
+    outline: Outline,
+}
+
+impl Hollow {
+    fn has(&self, x: f64) -> bool {
+        (self.x[0]..self.x[1]).contains(&x.abs())
+    }
+}
+
+/// What saves weight, and what lets a hand and a screwdriver in: the well to the spool, troughs beside lugs through which axles and
+/// clips go in, screws and their square nuts.
+fn hollows(hand: &HandDescription, layout: &Layout<'_>) -> Vec<Hollow> {
+    let [half_x, half_y, half_z] = hand.palm.half_size;
+    let (top, bottom) = (2.0 * half_z, 0.0);
+    let hollow = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| Hollow { x, outline: rectangle(y, z) };
+    // Pockets of the digits, on the sides of thumb and fingers.
+    let inward = layout.reach(hand, hand.joint.range[1] - hand.joint.rest_angle);
+    let (thumb, finger) = (hand.thumb.base, hand.fingers[0].base);
+    let inside = [thumb[1] + inward, finger[1] - inward];
+    let lugs = layout.half_width();
+    // Beside the thumb's lugs, and between those of the fingers.
+    let (beside, gap) = (lugs + SKIN, finger[0] - lugs - SKIN);
+    let posts = POSTS[0] - 0.5 * NUT[0] - SKIN;
+    let cells = [SKIN, top - SKIN];
+    // Above the troughs.
+    let low = CLIP_ROOM + SKIN;
+    let mut hollows = vec![
+        hollow([0.0, WELL], [-WELL, WELL], [-FAR, FAR]),
+        hollow([0.0, beside], [inside[0] + SKIN, inside[1] - SKIN], cells),
+        hollow([beside, posts], [inside[0], inside[1] - SKIN], cells),
+        hollow([beside, half_x], [-half_y + SKIN, inside[0]], [low, top - SKIN]),
+        hollow([0.0, gap], [inside[1] - SKIN, half_y - SKIN], [low, top - SKIN]),
+        hollow([lugs, half_x], [thumb[1] - CLIP_ROOM, thumb[1] + CLIP_ROOM], [-FAR, CLIP_ROOM]),
+        hollow([0.0, finger[0] - lugs], [finger[1] - CLIP_ROOM, finger[1] + CLIP_ROOM], [-FAR, CLIP_ROOM]),
+    ];
+    for side in [-1.0, 1.0] {
+        let (screw, nut) = (0.5 * SCREW, 0.5 * NUT[0]);
+        let y = side * POSTS[1];
+        let under = top - NUT_UNDER;
+        hollows.push(hollow([POSTS[0] - screw, POSTS[0] + screw], [y - screw, y + screw], [bottom + SKIN, FAR]));
+        hollows.push(hollow([POSTS[0] - nut, half_x], [y - nut, y + nut], [under - NUT[1], under]));
+    }
+    hollows
 }
 
 /// What the proximal link and its pulley swing in.

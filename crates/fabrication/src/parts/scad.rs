@@ -2,14 +2,13 @@
 
 use std::fmt::Write;
 
-use super::super::description::HandDescription;
-use super::super::error::HandError;
-use super::super::names::KINDS;
-use super::super::solid::{HOLE_SEGMENTS, SEGMENTS};
-use super::super::space::DESIGN_LEN;
-use super::super::workshop::{SeatedSpring, Workshop};
 use super::layout::{FRAME, Layout, PIN_CIRCLE};
-use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS};
+use crate::error::PartError;
+use crate::solid::{HOLE_SEGMENTS, SEGMENTS};
+use crate::workshop::{SeatedSpring, Workshop};
+use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_tasks::hand::HandDescription;
+use hwasp_tasks::hand::names::{KINDS, LINK_PARTS, PALM_PART, PULLEY_PARTS};
 
 /// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `layout.rs` in OpenSCAD's language.
 const MODULES: &str = include_str!("hand.scad");
@@ -20,7 +19,7 @@ pub fn scad(
     design: &[f64; DESIGN_LEN],
     springs: &[SeatedSpring; 4],
     workshop: &Workshop,
-) -> Result<String, HandError> {
+) -> Result<String, PartError> {
     let layout = Layout { workshop, springs };
     layout.check(hand, design)?;
     let mut text = String::from("// An underactuated hand. Lengths in mm, angles in rad.\n\n");
@@ -109,8 +108,8 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::space::SEARCHED;
     use super::*;
+    use hwasp_tasks::hand::SEARCHED;
 
     #[test]
     fn parameters_are_at_the_top_and_every_part_can_be_shown() {

@@ -1,16 +1,25 @@
-//! The hand on the bench: what of it is printed in a workshop, and what that takes.
+//! The hand on the bench: what of it is printed in a workshop, what is bought, and what that takes.
 //!
 //! A [`Workshop`] says what is bought and what the printer can do. [`parts`] makes the solids of a design for it and the springs
-//! that were chosen; [`scad`] says the same shapes by parameters.
+//! that were chosen; [`scad`] says the same shapes by parameters. [`link_bodies`] says what links weigh, [`droop_of`] whether they stay
+//! open, and [`verdict`] whether the hand can be built.
 
 #![forbid(unsafe_code)]
 
+mod bodies;
+mod bought;
+mod droop;
 mod error;
 mod parts;
 mod solid;
+mod verdict;
 mod workshop;
 
+pub use bodies::{LinkBody, link_bodies, pads};
+pub use bought::{Axle, Clip, MOTOR_MASS, PAD_FRICTION, Pad};
+pub use droop::{JointDroop, droop_of};
 pub use error::PartError;
-pub use parts::{Part, coupon, parts, scad};
-pub use solid::{Axis, Mesh, MeshError};
+pub use parts::{Filling, Part, Weight, coupon, parts, scad};
+pub use solid::{Axis, Mesh, MeshError, Wall};
+pub use verdict::{Finding, FittedSpring, LEAST_WALL, MASS_SHARE, Verdict, verdict};
 pub use workshop::{SeatedSpring, Workshop};

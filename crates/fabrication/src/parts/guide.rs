@@ -27,7 +27,7 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
         disc([0.0; 2], cavity + 3e-3),
     ];
     for way in &ways {
-        body.push(band(way.exit, [0.0; 2], ARM));
+        body.push(band(way.exit, way.at(way.length), ARM));
         body.push(disc(way.pin, BOSS));
     }
     let seat = |way: &Way| way.pin_height - TURN_PIN[0];
@@ -38,11 +38,10 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
         cut.push(disc([0.0; 2], if z < levels.palm + FLOOR { WELL * SQRT_2 } else { cavity }));
         for way in &ways {
             let half = layout.channel() + layout.workshop.print_clearance;
-            cut.push(rectangle([way.exit[0] - half, way.exit[0] + half], [way.exit[1] - half, way.exit[1] + half]));
+            // Along the line's way, so that it opens into the pin's seat with no thin wall between.
+            cut.push(band(way.at(-half), way.at(half), half));
             if z > bottom(way) {
-                let from = [0, 1].map(|i| way.exit[i] - CHANNEL * way.along[i]);
-                let to = [0, 1].map(|i| way.exit[i] + (ARM_TO_DRUM - CHANNEL) * way.along[i]);
-                cut.push(band(from, to, CHANNEL));
+                cut.push(band(way.at(-CHANNEL), way.at(way.length), CHANNEL));
             }
             if z > seat(way) {
                 cut.push(pin_seat(way, layout));
@@ -51,9 +50,6 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
         (body.clone(), cut)
     })
 }
-
-/// Further than any line has to the drum's cavity, and no further than through it, m.
-const ARM_TO_DRUM: f64 = 0.022;
 
 /// What the pin lies in, across the line.
 fn pin_seat(way: &Way, layout: &Layout<'_>) -> Outline {

@@ -10,7 +10,7 @@ use hwasp_tasks::hand::{HandDescription, LinkDescription};
 use hwasp_tasks::hand::{positive, within};
 
 /// What the parts of a hand are laid out by.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout<'a> {
     pub(super) workshop: &'a Workshop,
     /// The springs of each of [`KINDS`].

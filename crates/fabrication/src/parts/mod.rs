@@ -39,10 +39,11 @@ use hwasp_tasks::hand::names::{KINDS, LINK_PARTS, MOUNT_PARTS, PALM_PART, PULLEY
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 
 use crate::error::PartError;
-use crate::solid::{Axis, Layer, Mesh, Outline, stack};
+use crate::solid::{Axis, Layer, Mesh, Outline, Wall, core, stack, thinnest_across, thinnest_along};
 use crate::workshop::{SeatedSpring, Workshop};
 use layout::Layout;
 
+pub(crate) use mount::TURN_PIN;
 pub use scad::scad;
 
 /// A part to print.
@@ -58,6 +59,66 @@ pub struct Part {
     pub axis: Axis,
     /// The layers, from low to high.
     pub(crate) layers: Vec<Layer>,
+}
+
+/// Mass and centre of mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass in the frame of the body, m.
+    pub centre: [f64; 3],
+}
+
+impl Weight {
+    /// Both together.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        let whole = mass.max(f64::MIN_POSITIVE);
+        let centre = [0, 1, 2].map(|i| (self.mass * self.centre[i] + other.mass * other.centre[i]) / whole);
+        Self { mass, centre }
+    }
+}
+
+/// What a part weighs: as it is printed full, and what of that is in its core and can be filled in part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filling {
+    /// The whole part, printed full.
+    pub full: Weight,
+    /// Its core.
+    pub core: Weight,
+}
+
+impl Filling {
+    /// With a core that is filled by a share from 0 to 1.
+    pub fn filled(&self, share: f64) -> Weight {
+        let left_out = self.core.mass * (1.0 - share);
+        self.full.with(Weight { mass: -left_out, centre: self.core.centre })
+    }
+}
+
+impl Part {
+    /// The thinnest wall, in its mesh: across its layers or along them.
+    pub fn thinnest_wall(&self) -> Wall {
+        let across = thinnest_across(&self.mesh, self.axis);
+        let along = thinnest_along(&self.layers);
+        if along.thickness < across.thickness {
+            Wall { at: self.axis.point(along.at.0, along.at.1), thickness: along.thickness }
+        } else {
+            across
+        }
+    }
+
+    /// What it weighs of a material of this density, kg/m³, under a shell of this thickness, m: the volume of the mesh, less that of the
+    /// core.
+    pub fn filling(&self, density: f64, shell: f64) -> Filling {
+        let core = core(&self.layers, shell);
+        Filling {
+            full: Weight { mass: density * self.mesh.volume(), centre: self.mesh.centre() },
+            core: Weight { mass: density * core.volume, centre: self.axis.point(core.middle.0, core.middle.1) },
+        }
+    }
 }
 
 /// Palm, four links, four pulleys and what is on the palm, of a hand with this design (SI) and these springs at each of [`KINDS`], or
@@ -88,6 +149,33 @@ pub fn parts(
         parts.push(part(name, 1, Axis::Z, layers)?);
     }
     Ok(parts)
+}
+
+/// Figures of the layout that bought parts follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Dimensions<'a> {
+    layout: Layout<'a>,
+    /// Half of a joint's width, from cheek to cheek, m.
+    pub(crate) half_width: f64,
+    /// Half of the way of a line in a link, m.
+    pub(crate) line_way: f64,
+    /// Pins between a distal pulley and its link, m.
+    pub(crate) pin_length: f64,
+}
+
+impl Dimensions<'_> {
+    /// From a joint to where the whole width of a link of this radius begins, m.
+    pub(crate) fn setback(&self, radius: f64) -> f64 {
+        self.layout.setback(radius)
+    }
+}
+
+/// Those of this workshop with these springs.
+pub(crate) fn dimensions<'a>(springs: &'a [SeatedSpring; 4], workshop: &'a Workshop) -> Dimensions<'a> {
+    let layout = Layout { workshop, springs };
+    // From the groove through flange and gap into the thinnest floor of a prong.
+    let pin_length = layout.flange() + workshop.print_clearance + layout.plate();
+    Dimensions { layout, half_width: layout.half_width(), line_way: layout.channel(), pin_length }
 }
 
 /// The test coupon: holes and walls as the hand has them, to be printed first and tried with what was bought.

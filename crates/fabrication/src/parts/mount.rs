@@ -59,7 +59,7 @@ const TONGUE: f64 = 8e-3;
 const PLATE: f64 = 0.010;
 
 /// Pins that turn lines: radius and half length, m (ISO 2338, 3 x 10).
-pub(super) const TURN_PIN: [f64; 2] = [1.5e-3, 5e-3];
+pub(crate) const TURN_PIN: [f64; 2] = [1.5e-3, 5e-3];
 
 /// Screws between drum and hub, which clamp the lines' ends: four of M2.5 on this circle, m.
 pub(super) const DRUM_CIRCLE: f64 = 4.5e-3;
@@ -109,14 +109,22 @@ impl Levels {
 pub(super) struct Way {
     /// Where it comes up.
     pub(super) exit: [f64; 2],
-    /// Which way it leaves, to touch the drum.
+    /// Which way it leaves, to touch the drum, and how far it has to that.
     pub(super) along: [f64; 2],
+    pub(super) length: f64,
     /// The middle of the pin that turns it.
     pub(super) pin: [f64; 2],
     /// The height of the pin's middle, m.
     pub(super) pin_height: f64,
     /// The height at which it runs, m.
     pub(super) height: f64,
+}
+
+impl Way {
+    /// The point so far along it, m.
+    pub(super) fn at(&self, far: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.exit[i] + far * self.along[i])
+    }
 }
 
 /// The ways of thumb and fingers. All of them touch the drum on the side that winds them when it turns the same way.
@@ -134,6 +142,6 @@ pub(super) fn ways(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout: &
         let along = [0, 1].map(|i| (touch[i] - exit[i]) / length);
         let lever = TURN_PIN[0] + 0.5 * line;
         let height = levels.groove(index, layout);
-        Way { exit, along, pin: [0, 1].map(|i| exit[i] + lever * along[i]), pin_height: height - lever, height }
+        Way { exit, along, length, pin: [0, 1].map(|i| exit[i] + lever * along[i]), pin_height: height - lever, height }
     })
 }

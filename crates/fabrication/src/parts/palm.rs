@@ -31,7 +31,7 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
     let heights = heights.chain(of_hollows).filter(|x| x.abs() < half_x).chain([-half_x, half_x]);
     between(heights.collect(), |x| {
         let (mut add, mut cut) = (vec![body.clone()], Vec::new());
-        cut.extend(hollows.iter().filter(|hollow| hollow.has(x)).map(|hollow| hollow.outline.clone()));
+        cut.extend(hollows.iter().filter(|hollow| hollow.has(x)).map(|hollow| rectangle(hollow.y, hollow.z)));
         for (digit, kind) in digits() {
             let (outward, from_digit) = (digit.outward(), x - digit.base[0]);
             let away = from_digit.abs();
@@ -59,11 +59,12 @@ pub(super) fn layers(hand: &HandDescription, design: &[f64; DESIGN_LEN], layout:
     })
 }
 
-/// A part of the palm that is left out, on both sides of its middle.
-struct Hollow {
+/// A part of the palm that is left out, on both sides of its middle: a block.
+pub(super) struct Hollow {
     /// Between these distances from the middle.
-    x: [f64; 2],
-    outline: Outline,
+    pub(super) x: [f64; 2],
+    pub(super) y: [f64; 2],
+    pub(super) z: [f64; 2],
 }
 
 impl Hollow {
@@ -74,10 +75,10 @@ impl Hollow {
 
 /// What saves weight, and what lets a hand and a screwdriver in: the well to the spool, troughs beside lugs through which axles and
 /// clips go in, screws and their square nuts.
-fn hollows(hand: &HandDescription, layout: &Layout<'_>) -> Vec<Hollow> {
+pub(super) fn hollows(hand: &HandDescription, layout: &Layout<'_>) -> Vec<Hollow> {
     let [half_x, half_y, half_z] = hand.palm.half_size;
     let (top, bottom) = (2.0 * half_z, 0.0);
-    let hollow = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| Hollow { x, outline: rectangle(y, z) };
+    let hollow = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| Hollow { x, y, z };
     // Pockets of the digits, on the sides of thumb and fingers.
     let inward = layout.reach(hand, hand.joint.range[1] - hand.joint.rest_angle);
     let (thumb, finger) = (hand.thumb.base, hand.fingers[0].base);

@@ -21,7 +21,8 @@ pub(super) fn drum(hand: &HandDescription, layout: &Layout<'_>) -> Vec<Layer> {
     let (levels, radius) = (Levels::new(hand, layout), hand.transmission.spool_radius);
     let bottom = layout.groove_bottom(radius);
     let half = layout.groove();
-    let down = bottom - layout.workshop.wall - LINE_HOLE;
+    // The sides of polygons are a little inside of their circles.
+    let down = bottom - layout.workshop.wall - LINE_HOLE - 2e-5;
     let middles = [0, 1, 2].map(|digit| levels.groove(digit, layout));
     let heights = middles.into_iter().flat_map(|middle| [middle - half, middle + half]);
     between(heights.chain([levels.drum, levels.hub]).collect(), |z| {

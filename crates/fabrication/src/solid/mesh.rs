@@ -69,6 +69,17 @@ impl Mesh {
         self.triangles().map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
     }
 
+    /// The middle of what is enclosed, m.
+    pub fn centre(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for [a, b, c] in self.triangles() {
+            let volume = dot(a, cross(b, c)) / 6.0;
+            sum = [0, 1, 2].map(|i| sum[i] + volume * (a[i] + b[i] + c[i]) / 4.0);
+        }
+        let whole = self.volume();
+        sum.map(|sum| sum / whole)
+    }
+
     /// The least and the greatest coordinates, m.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let along = |pick: fn(f64, f64) -> f64, start| {
@@ -167,6 +178,7 @@ mod tests {
         mesh.check().unwrap();
         assert!((mesh.volume() - 36e-9).abs() < 1e-20);
         assert_eq!(mesh.bounds(), [[0.0; 3], [0.006; 3]]);
+        assert!(mesh.centre().iter().all(|middle| (middle - 0.0015).abs() < 1e-12));
     }
 
     #[test]

@@ -104,7 +104,7 @@ pub(super) fn area(outline: &[[f64; 2]]) -> f64 {
 }
 
 /// Whether a point is inside, by the edges that a ray from it crosses.
-pub(crate) fn contains(outline: &[[f64; 2]], [y, z]: [f64; 2]) -> bool {
+pub(super) fn contains(outline: &[[f64; 2]], [y, z]: [f64; 2]) -> bool {
     edges(outline)
         .filter(|&([ay, az], [by, bz])| (az > z) != (bz > z) && y < ay + (by - ay) * (z - az) / (bz - az))
         .count()
@@ -113,7 +113,7 @@ pub(crate) fn contains(outline: &[[f64; 2]], [y, z]: [f64; 2]) -> bool {
 }
 
 /// The sides, from corner to corner.
-pub(crate) fn edges(outline: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+pub(super) fn edges(outline: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     outline.iter().copied().zip(outline.iter().copied().cycle().skip(1))
 }
 

@@ -26,26 +26,40 @@ pub type LegHoles = [u32; 4];
 
 /// The steps, in order.
 pub fn steps(workshop: &Workshop, holes: &LegHoles) -> Vec<Step> {
-    let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let each = |what: &str, of: &[&str]| of.iter().map(|name| format!("{what} {name}")).collect::<Vec<_>>();
+    [coupon_step(workshop)].into_iter().chain(of_digits(workshop, holes)).chain(of_mount()).collect()
+}
+
+fn names(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+fn each(what: &str, of: &[&str]) -> Vec<String> {
+    of.iter().map(|name| format!("{what} {name}")).collect()
+}
+
+fn coupon_step(workshop: &Workshop) -> Step {
+    Step {
+        title: "Print and try the coupon",
+        takes: names(&["test_coupon"]),
+        how: format!(
+            "Every part lies in its file with the axis upright that the bill names. Print the coupon as the parts will be. An \
+             axle turns freely in the second bore of the row of five and in no narrower one; springs' legs, pins and nuts go into \
+             their holes by hand; the four holes of the circle lie on the horn's threads; the two ribs on the right, {:.2} mm apart, \
+             are not joined. Otherwise set axle, pin, print_clearance or the slicer's hole compensation, and export anew.",
+            1e3 * workshop.print_clearance
+        ),
+        shows: vec!["test_coupon"],
+    }
+}
+
+/// Links, pulleys, springs and pads, and the palm.
+fn of_digits(workshop: &Workshop, holes: &LegHoles) -> Vec<Step> {
     let [thumb, finger] = [of_digit(0), of_digit(2)];
     let legs = |kinds: [usize; 2]| {
         let told = kinds.map(|kind| format!("no. {} at {}", holes[kind], KINDS[kind]));
         format!("{} of {}", told.join(" and "), workshop.holes())
     };
     vec![
-        Step {
-            title: "Print and try the coupon",
-            takes: names(&["test_coupon"]),
-            how: format!(
-                "Every part lies in its file with the axis upright that the bill names. Print the coupon as the parts will be. An \
-                 axle turns freely in the second bore of the row of five and in no narrower one; springs' legs, pins and nuts go into \
-                 their holes by hand; the four holes of the circle lie on the horn's threads; the two ribs on the right, {:.2} mm apart, \
-                 are not joined. Otherwise set axle, pin, print_clearance or the slicer's hole compensation, and export anew.",
-                1e3 * workshop.print_clearance
-            ),
-            shows: vec!["test_coupon"],
-        },
         Step {
             title: "Pin the distal pulleys to their links, with the line",
             takes: names(&[thumb[1], thumb[3], finger[1], finger[3], "pulley pin", "line", "glue"]),
@@ -98,6 +112,12 @@ pub fn steps(workshop: &Workshop, holes: &LegHoles) -> Vec<Step> {
             ),
             shows: vec![thumb[0], thumb[1]],
         },
+    ]
+}
+
+/// Everything on the palm, up to the robot.
+fn of_mount() -> Vec<Step> {
+    vec![
         Step {
             title: "Put the guide on the palm",
             takes: names(&["line_guide", "line pin", "square nut M3, palm"]),
@@ -156,7 +176,8 @@ pub fn steps(workshop: &Workshop, holes: &LegHoles) -> Vec<Step> {
 
 /// The assembly as a sheet: numbered steps with the rows that each takes as boxes to tick, and its picture.
 pub fn assembly_sheet(steps: &[Step], bill: &Bill) -> String {
-    let mut text = "# Assembly\n\nTick what a step takes before you begin it. `bill.csv` says what everything is.\n".to_owned();
+    let mut text =
+        "# Assembly\n\nTick what a step takes before you begin it. `bill.csv` says what everything is.\n".to_owned();
     for (index, step) in steps.iter().enumerate() {
         let number = index + 1;
         let _ = write!(text, "\n## {number}. {}\n\n![step {number}]({})\n\n", step.title, picture_name(number));
@@ -170,7 +191,7 @@ pub fn assembly_sheet(steps: &[Step], bill: &Bill) -> String {
 }
 
 /// The file of a step's picture.
-pub fn picture_name(number: usize) -> String {
+pub(crate) fn picture_name(number: usize) -> String {
     format!("step_{number:02}.svg")
 }
 

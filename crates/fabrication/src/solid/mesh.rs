@@ -64,6 +64,11 @@ impl Mesh {
         self.triangles.iter().map(|corners| corners.map(|corner| self.vertices[corner]))
     }
 
+    /// Vertices, m, and the indices of the corners of every triangle.
+    pub(super) fn indexed(&self) -> (&[[f64; 3]], &[[usize; 3]]) {
+        (&self.vertices, &self.triangles)
+    }
+
     /// The enclosed volume, m³: the tetrahedra from the origin to every triangle.
     pub fn volume(&self) -> f64 {
         self.triangles().map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()

@@ -1,11 +1,13 @@
 //! Solids that are stacks of flat layers, as closed meshes: all that printed parts are made of.
 
+mod faces;
 mod grid;
 mod layers;
 mod mesh;
 mod outline;
 mod wall;
 
+pub(crate) use faces::{Face, faces};
 pub(crate) use grid::{core, thinnest_along};
 pub use layers::Axis;
 pub(crate) use layers::{Layer, stack};

@@ -2,7 +2,7 @@
 
 use hwasp_tasks::hand::names::KINDS;
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::bodies::{LinkBody, link_of};
 
@@ -10,10 +10,10 @@ use crate::bodies::{LinkBody, link_of};
 const POSES: u32 = 32;
 
 /// The pose in which a kind of joint comes nearest to falling shut, palm down.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointDroop {
     /// The joint.
-    pub joint: &'static str,
+    pub joint: String,
     /// Angles of the proximal and the distal joint of the digit, rad.
     pub pose: [f64; 2],
     /// Torque of gravity there, N·m; positive closes.
@@ -35,7 +35,7 @@ pub fn droop_of(hand: &HandDescription, design: &[f64; DESIGN_LEN], bodies: &[Li
     let poses = || (0..=POSES).map(|i| open + (closed - open) * f64::from(i) / f64::from(POSES));
     let worst = |kind: usize| {
         let at = |pose: [f64; 2]| JointDroop {
-            joint: KINDS[kind],
+            joint: KINDS[kind].to_owned(),
             pose,
             weight: weight(hand, bodies, kind, pose),
             spring: design[4 + kind] * (pose[kind % 2] + design[8 + kind]),

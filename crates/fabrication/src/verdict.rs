@@ -4,7 +4,7 @@ use std::fmt;
 
 use hwasp_tasks::hand::names::{KINDS, LINK_PARTS};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::bodies::{LinkBody, link_bodies};
 use crate::droop::{JointDroop, droop_of};
@@ -30,18 +30,24 @@ pub struct FittedSpring {
 }
 
 /// One thing that was looked at.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// What: `droop`, `springs`, `walls`, `masses` or `parts`.
-    pub what: &'static str,
+    pub what: String,
     /// Whether it is as it has to be.
     pub good: bool,
     /// In words, with values and limits.
     pub told: String,
 }
 
+impl Finding {
+    fn new(what: &str, good: bool, told: String) -> Self {
+        Self { what: what.to_owned(), good, told }
+    }
+}
+
 /// Whether a hand can be built, and why.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Whether everything is as it has to be.
     pub buildable: bool,
@@ -58,7 +64,7 @@ impl Verdict {
 
     /// The verdict on a hand that no parts were found for: what kept them from being chosen.
     pub fn without_parts(told: String) -> Self {
-        Self::of(vec![Finding { what: "parts", good: false, told }], Vec::new())
+        Self::of(vec![Finding::new("parts", false, told)], Vec::new())
     }
 }
 
@@ -109,7 +115,7 @@ fn of_droop(droop: &[JointDroop], workshop: &Workshop) -> Finding {
         margins.join(", "),
         1e3 * wanted
     );
-    Finding { what: "droop", good: worst.is_none(), told }
+    Finding::new("droop", worst.is_none(), told)
 }
 
 fn of_springs(springs: &[FittedSpring; 4], workshop: &Workshop) -> Finding {
@@ -124,14 +130,14 @@ fn of_springs(springs: &[FittedSpring; 4], workshop: &Workshop) -> Finding {
         shares.join(", "),
         100.0 * most
     );
-    Finding { what: "springs", good, told }
+    Finding::new("springs", good, told)
 }
 
 fn of_walls(parts: &[Part], workshop: &Workshop) -> Finding {
     let walls = parts.iter().map(|part| (part.name, part.thinnest_wall()));
     let thinnest = walls.min_by(|a, b| a.1.thickness.total_cmp(&b.1.thickness));
     let Some((part, wall)) = thinnest else {
-        return Finding { what: "walls", good: false, told: "there are no parts".to_owned() };
+        return Finding::new("walls", false, "there are no parts".to_owned());
     };
     let wanted = LEAST_WALL.max(workshop.wall);
     let good = wall.thickness > wanted - LAST_DIGITS;
@@ -142,7 +148,7 @@ fn of_walls(parts: &[Part], workshop: &Workshop) -> Finding {
         1e3 * wall.thickness,
         1e3 * wanted
     );
-    Finding { what: "walls", good, told }
+    Finding::new("walls", good, told)
 }
 
 fn of_masses(bodies: &[LinkBody]) -> Finding {
@@ -156,5 +162,5 @@ fn of_masses(bodies: &[LinkBody]) -> Finding {
     let good = bodies.iter().all(|body| body.off().abs() <= MASS_SHARE);
     let way = if good { "" } else { "; have another `shell` or `density`: `hwasp parts RUN --bench KEY=VALUE`" };
     let told = format!("links weigh {}; at most {:.0} % off is wanted{way}", told.join(", "), 100.0 * MASS_SHARE);
-    Finding { what: "masses", good, told }
+    Finding::new("masses", good, told)
 }

@@ -92,9 +92,9 @@ pub(crate) fn part_drawing(part: &Part, item: &Item) -> String {
         let names = [across, along, upright];
         let (width, height) = (extent[horizontal], extent[vertical]);
         let bottom = origin[1] + height + 5.0;
-        sheet.dimension([origin[0], bottom], [origin[0] + width, bottom], &format!("{} {width:.2}", names[horizontal]));
+        sheet.dimension([origin[0], bottom], [origin[0] + width, bottom], &format!("{} {width:.1}", names[horizontal]));
         let beside = origin[0] + width + 4.0;
-        sheet.dimension([beside, origin[1]], [beside, origin[1] + height], &format!("{} {height:.2}", names[vertical]));
+        sheet.dimension([beside, origin[1]], [beside, origin[1] + height], &format!("{} {height:.1}", names[vertical]));
     }
     // The holes by their numbers, where they are.
     let mut row = [right[0] + extent[2] + MARGIN, MARGIN + 10.0];
@@ -112,6 +112,11 @@ pub(crate) fn part_drawing(part: &Part, item: &Item) -> String {
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{}</svg>\n",
         sheet.body
     )
+}
+
+/// To a hundredth of a millimetre, and no negative zero.
+fn hundredths(metres: f64) -> f64 {
+    (1e5 * metres).round() / 100.0 + 0.0
 }
 
 /// The edges between faces that are no one round side.
@@ -149,7 +154,7 @@ fn tables(part: &Part, sheet: &mut Sheet, row: &mut [f64; 2], put: impl Fn([f64;
         row[1] += LINE;
         for round in found.iter().take(MOST_ROWS) {
             number += 1;
-            let [a, b, from, to] = [round.middle[0], round.middle[1], round.span[0], round.span[1]].map(|it| 1e3 * it);
+            let [a, b, from, to] = [round.middle[0], round.middle[1], round.span[0], round.span[1]].map(hundredths);
             let diameter = 2e3 * round.radius;
             let told = format!("{number}   ⌀ {diameter:.2}   {a:.2}, {b:.2}   {from:.2} to {to:.2}");
             sheet.text(*row, 3.0, "start", &told);
@@ -163,7 +168,7 @@ fn tables(part: &Part, sheet: &mut Sheet, row: &mut [f64; 2], put: impl Fn([f64;
             row[1] += LINE;
         }
     }
-    let levels: Vec<String> = levels(part).iter().map(|level| format!("{:.2}", 1e3 * level)).collect();
+    let levels: Vec<String> = levels(part).iter().map(|level| format!("{:.2}", hundredths(*level))).collect();
     sheet.text(*row, 3.6, "start", &format!("levels along {upright}"));
     for some in levels.chunks(10) {
         row[1] += LINE;

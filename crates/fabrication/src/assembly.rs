@@ -129,7 +129,7 @@ fn of_mount() -> Vec<Step> {
         },
         Step {
             title: "Screw the spool on the motor",
-            takes: names(&["motor", "spool_hub", "screw M2 x 5", "spool_drum"]),
+            takes: names(&["motor", "bus and power", "spool_hub", "screw M2 x 5", "spool_drum"]),
             how: "Turn the motor to its middle. Screw the hub on the horn, heads sunk; set the drum on the hub with its three slots \
                   outwards of the robot, their holes open downwards."
                 .to_owned(),

@@ -184,6 +184,8 @@ fn transmission(hand: &HandDescription, springs: &[FittedSpring; 4], workshop: &
     items.push(bought("pulley pin", 6, what, Some(bar(workshop.pin, dims.pin_length))));
     let what = format!("braided polyethylene, {} mm, 50 lb (220 N), {LINE} m each", mm(workshop.line));
     items.push(bought("line", 3, what, None));
+    let what = "serial adapter U2D2 or the like, 12 V supply of 5 A, cables to the motor";
+    items.push(bought("bus and power", 1, what, None));
     items.push(bought("motor", 1, "Dynamixel XM430-W210-T or -R with its horn HN12-N101 and cable", Some(MOTOR_MASS)));
     items
 }

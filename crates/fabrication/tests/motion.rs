@@ -107,7 +107,7 @@ fn springs() -> [SeatedSpring; 4] {
 }
 
 /// The largest common area of joined parts over 200 poses of every joint.
-fn largest(design: &[f64; DESIGN_LEN], poses: impl Iterator<Item = f64> + Clone) -> (f64, String) {
+fn largest(design: &[f64; DESIGN_LEN], poses: &[f64]) -> (f64, String) {
     let hand = HandDescription::default();
     let made = parts(&hand, design, &springs(), &Workshop::default()).unwrap();
     let sections = |name: &str| Sections::of(made.iter().find(|part| part.name == name).unwrap());
@@ -127,7 +127,7 @@ fn largest(design: &[f64; DESIGN_LEN], poses: impl Iterator<Item = f64> + Clone)
         let (of_link, of_pulley) =
             if digit.outward() > 0.0 { (proximal.turned(), first.turned()) } else { (proximal, first) };
         let side = -digit.outward();
-        for angle in poses.clone() {
+        for &angle in poses {
             let place = turned_about([digit.base[1], 0.0], side * (hung + angle));
             see(of_link.shared(&palm, &place, digit.base[0]), format!("{name}_proximal_link and palm at {angle}"));
             if digit.base[0] <= 0.0 {
@@ -156,8 +156,8 @@ fn part_again(link: &Sections, outward: f64) -> Sections {
 #[test]
 fn joined_parts_have_room_in_200_poses() {
     for design in [PAPER_HWASP, SEARCHED] {
-        let poses = (0..200).map(|pose| 1.57 * f64::from(pose) / 199.0);
-        let (area, what) = largest(&design, poses);
+        let poses: Vec<f64> = (0..200).map(|pose| 1.57 * f64::from(pose) / 199.0).collect();
+        let (area, what) = largest(&design, &poses);
         assert!(area < TOUCH, "{what}: {area} m²");
     }
 }
@@ -165,6 +165,6 @@ fn joined_parts_have_room_in_200_poses() {
 /// Before the open hand every link is inside of its stop, which shows that what is shared is found.
 #[test]
 fn stops_hold_the_open_hand() {
-    let (area, _) = largest(&SEARCHED, std::iter::once(-0.02));
+    let (area, _) = largest(&SEARCHED, &[-0.02]);
     assert!(area > 20.0 * TOUCH, "{area} m²");
 }

@@ -27,6 +27,24 @@ fn every_wall_is_as_thick_as_the_workshop_says() {
     assert!(least < 1.01 * workshop.wall, "{least}");
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+
+    /// The same of anything that the large range allows.
+    #[test]
+    fn every_wall_of_any_design_is_thick_enough(at in prop::array::uniform4(0.0..1.0)) {
+        let workshop = Workshop::default();
+        let mut design = PAPER_HWASP;
+        for (radius, at) in design.iter_mut().zip(at) {
+            *radius = 0.0024 + 0.0096 * at;
+        }
+        for part in parts(&HandDescription::default(), &design, &SPRINGS, &workshop).unwrap() {
+            let wall = part.thinnest_wall();
+            prop_assert!(wall.thickness > workshop.wall - 1e-6, "{}: {wall:?} of {:?}", part.name, &design[..4]);
+        }
+    }
+}
+
 /// The coupon has the walls that it tries, and every one of them can be printed.
 #[test]
 fn the_coupon_is_a_plate_with_the_thinnest_wall() {

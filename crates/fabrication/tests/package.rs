@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use hwasp_fabrication::{
     FittedSpring, MASS_SHARE, Origin, SeatedSpring, Workshop, bill, link_bodies, package, parts, step_files, steps,
@@ -122,7 +123,8 @@ fn drawings_are_svg_with_the_parts_sizes() {
         let file = files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("{name} is missing"));
         String::from_utf8(file.contents.clone()).unwrap()
     };
-    for file in files.iter().filter(|file| file.name.ends_with(".svg")) {
+    let is_drawing = |name: &str| Path::new(name).extension().is_some_and(|extension| extension == "svg");
+    for file in files.iter().filter(|file| is_drawing(&file.name)) {
         let text = std::str::from_utf8(&file.contents).unwrap();
         let document = Document::parse(text).unwrap();
         assert!(document.descendants().filter(|node| node.has_tag_name("text")).count() > 1, "{}", file.name);

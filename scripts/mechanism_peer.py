@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Loads the exported mechanism of a run with the programs of others: MuJoCo, URDF readers, trimesh and OpenSCAD. Python 3.11 or
+"""Loads the exported mechanism of a run with the programs of others: MuJoCo, URDF readers, trimesh, OpenCASCADE and OpenSCAD. Python 3.11 or
 newer; needs the network.
 
     cargo build --release
     python3 scripts/mechanism_peer.py                     # results/z-grasp
     python3 scripts/mechanism_peer.py runs/another-hand
 
-MuJoCo, yourdfpy, urdf_parser_py and trimesh are installed into a virtual environment in a temporary folder. OpenSCAD is used
+MuJoCo, yourdfpy, urdf_parser_py, trimesh and OpenCASCADE (the kernel of FreeCAD) are installed into a virtual environment in a temporary folder. OpenSCAD is used
 where it is installed (`apt install openscad`). Any warning is an error.
 """
 import os
@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release" / "hwasp"
-PINNED = ["mujoco==3.17.0", "yourdfpy==0.0.60", "urdf_parser_py==0.0.4", "trimesh==5.2.0"]
+PINNED = ["mujoco==3.17.0", "yourdfpy==0.0.60", "urdf_parser_py==0.0.4", "trimesh==5.2.0", "cadquery-ocp==8.0.1.1.0"]
 
 # Runs inside the environment, with the folder of the export and the run's design.toml.
 INSIDE = """
@@ -131,7 +131,7 @@ for file in sorted(folder.glob("*.stl")):
     size = " x ".join(f"{s:.1f}" for s in high - low)
     print(f"  {file.name:<27} {size:>20} mm {1e-3 * mesh.volume:>8.2f} cm3 {len(mesh.faces):>6} triangles {file.stat().st_size / 1e3:>6.1f} kB")
 used = {visual.geometry.mesh.filename for link in robot.robot.links for visual in link.visuals}
-assert used == {f"{name}.stl" for name in parts} and len(parts) == 9, sorted(parts)
+assert used == {f"{name}.stl" for name in parts} and len(parts) == 15, sorted(parts)
 worst = 0.0
 for kind, name in enumerate(KINDS):
     link = parts[f"{name}_link"]
@@ -147,7 +147,7 @@ for kind, name in enumerate(KINDS):
     away = numpy.hypot(corners[:, 1], corners[:, 2])
     bottom = away[away > scad["radius"][kind] - line].min()
     worst = max(worst, close(f"groove of {name}", bottom + line / 2, scad["radius"][kind], 0.005))
-print(f"trimesh {trimesh.__version__}: all nine watertight; the line runs at the radii of the parts to {1e3 * worst:.1f} um")
+print(f"trimesh {trimesh.__version__}: all fifteen watertight; the line runs at the radii of the parts to {1e3 * worst:.1f} um")
 
 # Parts that are joined, and the pulleys in them, at 25 poses.
 placed = [(link.name, v.geometry.mesh.filename[:-4]) for link in robot.robot.links for v in link.visuals]
@@ -196,6 +196,42 @@ print(abs(theirs.volume / ours.volume - 1))
 """
 
 
+# Reads the STEP files with the kernel of FreeCAD: each one valid solid of the volume of its STL.
+STEP = """
+import sys, trimesh
+from pathlib import Path
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+
+largest, files = 0.0, sorted(Path(sys.argv[1]).glob("*.step"))
+assert len(files) == 16, files
+for file in files:
+    reader = STEPControl_Reader()
+    assert reader.ReadFile(str(file)) == IFSelect_RetDone, file
+    reader.TransferRoots()
+    shape = reader.OneShape()
+    assert BRepCheck_Analyzer(shape).IsValid(), file
+    solids, found = 0, TopExp_Explorer(shape, TopAbs_SOLID)
+    while found.More():
+        solids += 1
+        found.Next()
+    assert solids == 1, f"{file}: {solids} solids"
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties)
+    stl = file.with_suffix(".stl")
+    stl = stl if stl.is_file() else stl.parent / "package" / stl.name
+    off = abs(properties.Mass() / trimesh.load_mesh(stl).volume - 1)
+    assert off < 1e-6, f"{file}: {off}"
+    largest = max(largest, off)
+print(f"OpenCASCADE: {len(files)} STEP files, each one valid solid with the volume of its STL to {largest:.0e}")
+"""
+
+
 def openscad(python, folder):
     """Every part by OpenSCAD; the largest relative difference of volumes."""
     largest = 0.0
@@ -217,10 +253,11 @@ def main():
         python = f"{folder}/venv/bin/python"
         subprocess.run([python, "-m", "pip", "install", "--quiet", *PINNED], check=True)
         out = Path(folder) / "export"
-        command = [PROGRAM, "export", run, "--mjcf", "--urdf", "--stl", "--scad", "--out", out]
+        command = [PROGRAM, "export", run, "--mjcf", "--urdf", "--stl", "--scad", "--step", "--package", "--out", out]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         if subprocess.run([python, "-c", INSIDE, out, run / "design.toml"]).returncode:
             sys.exit(f"the mechanism of {run} is not sound")
+        subprocess.run([python, "-c", STEP, out], check=True)
         if shutil.which("openscad"):
             print(f"OpenSCAD makes the same parts of hand.scad: volumes to {openscad(python, out):.0e}")
         else:

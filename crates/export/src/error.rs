@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use hwasp_core::RolloutError;
+use hwasp_fabrication::PartError;
 use hwasp_problem::AnyError;
 use hwasp_runs::RunError;
-use hwasp_tasks::hand::HandError;
 use hwasp_training::AssembleError;
 use hwasp_workshop::parts::ChosenPartsError;
 use thiserror::Error;
@@ -40,7 +40,7 @@ pub enum ExportError {
     Mechanism(AnyError),
     /// A hand that cannot be printed.
     #[error(transparent)]
-    Hand(#[from] HandError),
+    Hand(#[from] PartError),
     /// A hand whose parts are not known.
     #[error(transparent)]
     Parts(#[from] ChosenPartsError),

@@ -49,5 +49,7 @@ fn files_of(kind: Kind, source: &Source) -> Result<Vec<ExportFile>, ExportError>
         Kind::Urdf => source.model(kind, ModelFormat::Urdf),
         Kind::Stl => Ok(printed::stl(source.hand(kind)?, source.chosen(kind)?)?),
         Kind::Scad => Ok(printed::scad_file(source.hand(kind)?, source.chosen(kind)?)?),
+        Kind::Step => Ok(printed::step(source.hand(kind)?, source.chosen(kind)?)?),
+        Kind::Package => Ok(printed::whole_package(source.hand(kind)?, source.chosen(kind)?)?),
     }
 }

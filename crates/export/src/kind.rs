@@ -21,12 +21,25 @@ pub enum Kind {
     Stl,
     /// The same as an OpenSCAD file, with the parameters at its top.
     Scad,
+    /// The same as STEP.
+    Step,
+    /// What a workshop gets beside them: bill, assembly, drawings, verdict.
+    Package,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Onnx, Self::Safetensors, Self::Json, Self::Mjcf, Self::Urdf, Self::Stl, Self::Scad];
+    pub const ALL: [Self; 9] = [
+        Self::Onnx,
+        Self::Safetensors,
+        Self::Json,
+        Self::Mjcf,
+        Self::Urdf,
+        Self::Stl,
+        Self::Scad,
+        Self::Step,
+        Self::Package,
+    ];
 
     /// Its name, as the command line has it.
     pub fn name(self) -> &'static str {
@@ -38,6 +51,8 @@ impl Kind {
             Self::Urdf => "urdf",
             Self::Stl => "stl",
             Self::Scad => "scad",
+            Self::Step => "step",
+            Self::Package => "package",
         }
     }
 
@@ -49,7 +64,7 @@ impl Kind {
             Self::Onnx | Self::Safetensors | Self::Json => true,
             Self::Mjcf => has(ModelFormat::Mjcf),
             Self::Urdf => has(ModelFormat::Urdf),
-            Self::Stl | Self::Scad => hand_of(spec).is_some(),
+            Self::Stl | Self::Scad | Self::Step | Self::Package => hand_of(spec).is_some(),
         }
     }
 }

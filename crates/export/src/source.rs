@@ -8,7 +8,7 @@ use hwasp_problem::{ModelFile, ModelFormat};
 use hwasp_runs::{DESIGN, RunError, SavedRun, saved_experiment};
 use hwasp_tasks::hand::HandDescription;
 use hwasp_workshop::design::{DesignReport, hand_of};
-use hwasp_workshop::parts::ChosenParts;
+use hwasp_workshop::parts::{ChosenParts, Verdict};
 
 use crate::contract::Contract;
 use crate::deployed::Deployed;
@@ -63,6 +63,11 @@ impl Source {
     /// The parts that print files were made for, once any were.
     pub fn printed_for(&self) -> Option<&ChosenParts> {
         self.chosen.get()
+    }
+
+    /// Whether the hand that print files were made for can be built, and why; once any were made.
+    pub fn verdict(&self) -> Option<Verdict> {
+        Some(self.printed_for()?.verdict(hand_of(&self.spec)?))
     }
 
     /// The parts of the mechanism, to be written as `kind`: the run's list where there is one.

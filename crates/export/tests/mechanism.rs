@@ -13,7 +13,7 @@ use hwasp_training::Assembly;
 use hwasp_workshop::design::DesignReport;
 use resvg::usvg::roxmltree::{Document, Node};
 
-const MECHANISM: [Kind; 4] = [Kind::Mjcf, Kind::Urdf, Kind::Stl, Kind::Scad];
+const MECHANISM: [Kind; 6] = [Kind::Mjcf, Kind::Urdf, Kind::Stl, Kind::Scad, Kind::Step, Kind::Package];
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results").join(name)
@@ -88,7 +88,7 @@ fn springs_and_pulleys_of_the_model_are_those_of_the_design() {
         let text = fs::read_to_string(folder.join("hand.urdf")).unwrap();
         let links = Document::parse(&text).unwrap();
         let meshes: Vec<Node<'_, '_>> = links.descendants().filter(|n| n.has_tag_name("mesh")).collect();
-        assert_eq!(meshes.len(), 13);
+        assert_eq!(meshes.len(), 19);
         for mesh in meshes {
             let bytes = fs::read(folder.join(mesh.attribute("filename").unwrap())).unwrap();
             let triangles = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;

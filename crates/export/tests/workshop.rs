@@ -145,7 +145,13 @@ fn a_run_without_a_list_is_printed_for_the_nearest_parts() {
     let trained = copy("z-grasp", "workshop-copy", &["experiment.toml", "design.toml"]);
     let (folder, from) = printed(&trained, "workshop-nearest");
     assert_eq!(from, None);
-    let (listed, _) = printed(&shipped("z-grasp"), "workshop-listed");
+    // The list of the shipped run may be of a workshop with other figures.
+    let list = PartsList { workshop: Workshop::default(), ..list(&shipped("z-grasp/build/parts.json")) };
+    let run = copy("z-grasp", "workshop-copy-listed", &["experiment.toml", "design.toml"]);
+    fs::create_dir_all(run.join("build")).unwrap();
+    fs::write(run.join("build/parts.json"), serde_json::to_vec(&list).unwrap()).unwrap();
+    let (listed, from) = printed(&run, "workshop-listed");
+    assert!(from.is_some());
     let text = |folder: &Path| fs::read_to_string(folder.join("hand.scad")).unwrap();
     assert_eq!(text(&folder), text(&listed));
 }
@@ -184,4 +190,32 @@ fn copy(run: &str, folder: &str, files: &[&str]) -> PathBuf {
         fs::copy(shipped(run).join(name), folder.join(name)).unwrap();
     }
     folder
+}
+
+/// The package says of each row of the bill which step takes it, and names the springs of the parts list; STEP files are beside the STL.
+#[test]
+fn the_package_is_that_of_the_list() {
+    let run = shipped("z-grasp");
+    let folder = empty(env!("CARGO_TARGET_TMPDIR"), "workshop-package");
+    let source = Source::open(&run, catalogue()).unwrap();
+    let files = export(&source, &[Kind::Package, Kind::Step], None, &folder).unwrap();
+    let list = list(&run.join("build/parts.json"));
+    let bill = fs::read_to_string(folder.join("package/bill.csv")).unwrap();
+    for JointParts { joint, spring, joints, .. } in &list.joints {
+        let row = bill.lines().find(|row| row.starts_with(&format!("spring of {joint},"))).unwrap();
+        assert!(row.starts_with(&format!("spring of {joint},{},bought,", joints * spring.count)), "{row}");
+        assert!(row.contains(&spring.part), "{row}");
+    }
+    let assembly = fs::read_to_string(folder.join("package/assembly.md")).unwrap();
+    for row in bill.lines().skip(1) {
+        let name = row.trim_start_matches('"').split([',', '"']).next().unwrap();
+        assert!(assembly.contains(name), "{name}");
+    }
+    assert!(assembly.contains(&format!("no. {} at thumb_distal", list.joints[1].spring.hole)));
+    assert!(folder.join("palm.step").is_file() && folder.join("package/palm.svg").is_file());
+    // The verdict of the package is that of the run.
+    let verdict = source.verdict().unwrap();
+    assert_eq!(fs::read_to_string(folder.join("package/verdict.txt")).unwrap(), format!("{verdict}\n"));
+    assert_eq!(hwasp_workshop::parts::verdict_of_run(&run, catalogue()).unwrap(), Some(verdict));
+    assert!(files.len() > 40);
 }

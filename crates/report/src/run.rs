@@ -9,7 +9,7 @@ use hwasp_runs::{
     saved_summary,
 };
 use hwasp_workshop::design::DesignReport;
-use hwasp_workshop::parts::{PARTS, PartsList};
+use hwasp_workshop::parts::{PARTS, PartsList, Verdict, verdict_of_run};
 use hwasp_workshop::tolerances::{Sensitivities, TOLERANCES};
 
 use crate::words;
@@ -28,6 +28,8 @@ pub(super) struct Run {
     pub(super) metrics: MetricsTable,
     pub(super) provenance: Option<Provenance>,
     pub(super) parts: Option<PartsList>,
+    /// Whether its hand can be built, if it is one.
+    pub(super) verdict: Option<Verdict>,
     pub(super) tolerances: Option<Sensitivities>,
 }
 
@@ -46,6 +48,7 @@ impl Run {
             metrics: saved_metrics(path)?,
             provenance: saved_provenance(path)?,
             parts: saved_json(&parts)?,
+            verdict: verdict_of_run(path, catalogue)?,
             tolerances: saved_json(&tolerances)?,
             spec,
         };

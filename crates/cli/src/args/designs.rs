@@ -60,12 +60,18 @@ pub(crate) struct KindArgs {
     /// hand.urdf: the hand's links and joints, with the STL files as what is seen
     #[arg(long)]
     urdf: bool,
-    /// palm.stl and each link and pulley, to print, in mm
+    /// palm.stl, each link and pulley and what is on the palm, to print, in mm
     #[arg(long)]
     stl: bool,
     /// hand.scad: the same for OpenSCAD, with the parameters at its top
     #[arg(long)]
     scad: bool,
+    /// palm.step and each other part, for programs that want solids instead of triangles
+    #[arg(long)]
+    step: bool,
+    /// package/: bill of materials, assembly in steps, a drawing of each part, a test coupon, and whether it can be built
+    #[arg(long)]
+    package: bool,
 }
 
 impl KindArgs {
@@ -79,6 +85,8 @@ impl KindArgs {
             Kind::Urdf => self.urdf,
             Kind::Stl => self.stl,
             Kind::Scad => self.scad,
+            Kind::Step => self.step,
+            Kind::Package => self.package,
         };
         Kind::ALL.into_iter().filter(asked).collect()
     }

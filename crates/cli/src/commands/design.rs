@@ -4,11 +4,22 @@ use hwasp_experiment::Catalogue;
 use hwasp_settings::nearest;
 use hwasp_settings::text::shorten;
 use hwasp_workshop::design::{DesignReport, write_closing};
+use hwasp_workshop::parts::{Verdict, verdict_of_run};
+use serde::Serialize;
 
 use super::{changes, run_folder};
 use crate::args::DesignArgs;
 use crate::failure::Failure;
 use crate::{output, report};
+
+/// A design and whether it can be built, as programs have it.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    report: &'a DesignReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verdict: Option<&'a Verdict>,
+}
 
 pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let path = &args.run;
@@ -30,6 +41,7 @@ pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failur
         return Err(Failure::input(message).hint(&hint));
     }
     let report = DesignReport::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;
+    let verdict = verdict_of_run(&args.run, catalogue).map_err(Failure::input)?;
     if args.out.is_some() && report.hand.is_none() {
         let task = &report.task;
         return Err(Failure::input(format!(
@@ -37,9 +49,9 @@ pub(crate) fn run(args: &DesignArgs, catalogue: &Catalogue) -> Result<(), Failur
         )));
     }
     let text = if args.json {
-        format!("{}\n", serde_json::to_string_pretty(&report)?)
+        format!("{}\n", serde_json::to_string_pretty(&Told { report: &report, verdict: verdict.as_ref() })?)
     } else {
-        report::design::design(&report)
+        report::design::design(&report, verdict.as_ref())
     };
     output::print(&text)?;
     // Scripts have the chart's points, and get the picture if they ask for it.

@@ -24,6 +24,9 @@ pub(crate) fn run(args: &ExportArgs, catalogue: &Catalogue) -> Result<(), Failur
     })?;
     if let Some(chosen) = source.printed_for() {
         output::remark(&report::parts::printed_for(chosen, &args.run));
+        if let Some(verdict) = source.verdict() {
+            output::remark(&verdict.to_string());
+        }
     }
     Ok(output::print(&report::exported(source.spec(), &out, &files, &left_out))?)
 }

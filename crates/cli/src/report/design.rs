@@ -4,12 +4,13 @@ use std::fmt::Write;
 
 use hwasp_runs::text::ReadableUnit;
 use hwasp_workshop::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
+use hwasp_workshop::parts::Verdict;
 
 /// Travel between the printed rows of free closing, mm.
 const ROWS_EVERY: usize = 4;
 
 /// What can be said of a run's design without simulating it.
-pub(crate) fn design(report: &DesignReport) -> String {
+pub(crate) fn design(report: &DesignReport, verdict: Option<&Verdict>) -> String {
     let mut text = format!("\n{} · {} · seed {}: the design\n\n", report.experiment, report.method, report.seed);
     let widest = report.groups.iter().map(|g| g.name.len()).max().unwrap_or(0).max("as trained".len());
     for group in &report.groups {
@@ -19,6 +20,9 @@ pub(crate) fn design(report: &DesignReport) -> String {
         text.push_str(&transmission(hand));
         text.push_str(&pinches(hand));
         text.push_str(&closing(hand));
+    }
+    if let Some(verdict) = verdict {
+        let _ = writeln!(text, "\n  {}", verdict.to_string().replace('\n', "\n  "));
     }
     text
 }

@@ -48,6 +48,9 @@ pub(crate) fn parts(list: &PartsList) -> String {
         text.push_str(&evaluated("trained further", &tuned.evaluation));
         text.push_str(&changed(&tuned.change));
     }
+    if let Some(verdict) = &list.verdict {
+        let _ = writeln!(text, "\n  {}", verdict.to_string().replace('\n', "\n  "));
+    }
     text
 }
 

@@ -3,7 +3,7 @@
 use hwasp_plot::{IntervalRow, intervals};
 use hwasp_runs::text::grouped;
 use hwasp_training::{Change, Evaluation, MeanInterval};
-use hwasp_workshop::parts::{JointParts, PartsList, SpringPart};
+use hwasp_workshop::parts::{JointParts, PartsList, SpringPart, Verdict};
 use maud::{Markup, html};
 
 use super::outcome::rate_row;
@@ -20,7 +20,20 @@ pub(crate) fn section(run: &Run) -> Section {
         .parts
         .as_ref()
         .map_or_else(|| not_yet("parts", &line, then), |list| html! { (springs(list)) (worth(list)) });
+    let body = html! { @if let Some(verdict) = &run.verdict { (told(verdict)) } (body) };
     Section { id: "parts", title: "Parts to buy and make", body }
+}
+
+/// Whether the hand can be built, and why.
+fn told(verdict: &Verdict) -> Markup {
+    html! {
+        p { strong { @if verdict.buildable { "Buildable" } @else { "Not buildable" } } "." }
+        ul {
+            @for finding in &verdict.findings {
+                li { strong { (finding.what) @if !finding.good { ", not good" } } ": " (finding.told) }
+            }
+        }
+    }
 }
 
 fn springs(list: &PartsList) -> Markup {

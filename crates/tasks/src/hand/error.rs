@@ -30,18 +30,6 @@ pub enum HandError {
         /// In this unit.
         unit: &'static str,
     },
-    /// A part that this hand has no room for.
-    #[error("{what} takes {:.2} mm, and this hand has {:.2} mm for it\n  = hint: {hint}", 1e3 * needed, 1e3 * room)]
-    Room {
-        /// What needs room.
-        what: String,
-        /// How much it needs, m.
-        needed: f64,
-        /// How much there is, m.
-        room: f64,
-        /// The way out.
-        hint: &'static str,
-    },
     /// Principal moments of inertia that no rigid body has.
     #[error("{name} = {inertia:?} kg·m²: the largest is above the sum of the others, which no rigid body has")]
     Inertia {
@@ -50,21 +38,13 @@ pub enum HandError {
         /// The three.
         inertia: [f64; 3],
     },
-    /// A part that cannot be made.
-    #[error("{part} cannot be made: {message}")]
-    Part {
-        /// Which.
-        part: &'static str,
-        /// What is wrong with it.
-        message: String,
-    },
     /// Limits or starts of the design parameters.
     #[error(transparent)]
     Design(#[from] DesignError),
 }
 
 /// A positive finite number, or an error that names it.
-pub(super) fn positive(name: &str, value: f64, unit: &'static str) -> Result<(), HandError> {
+pub fn positive(name: &str, value: f64, unit: &'static str) -> Result<(), HandError> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
@@ -72,7 +52,7 @@ pub(super) fn positive(name: &str, value: f64, unit: &'static str) -> Result<(),
 }
 
 /// A number in `[lo, hi]`, or an error that names it. NaN is outside.
-pub(super) fn within(name: &str, value: f64, lo: f64, hi: f64, unit: &'static str) -> Result<(), HandError> {
+pub fn within(name: &str, value: f64, lo: f64, hi: f64, unit: &'static str) -> Result<(), HandError> {
     if (lo..=hi).contains(&value) {
         return Ok(());
     }

@@ -15,7 +15,7 @@
 //! [`TendonHand`] law, which stands between the motor and the joints, or the tendons of [`mjcf`] with [`Drive::NativeTendon`].
 //! [`FreeClosing`], [`droop`], [`pinch_band`] and [`PinchLift`] say of a design what can be said without a simulation.
 //!
-//! [`urdf`] has its links and joints, [`parts`] and [`scad`] what to print in a [`Workshop`].
+//! [`urdf`] has its links and joints; what is printed and bought for it is in the crate `hwasp-fabrication`.
 //!
 //! Nothing here needs the engine.
 //!
@@ -40,12 +40,9 @@ mod law;
 mod mechanism;
 mod mjcf;
 pub mod names;
-mod parts;
-mod solid;
 mod space;
 mod statics;
 mod urdf;
-mod workshop;
 mod xml;
 
 pub use closing::{ClosingPoint, FreeClosing, closing_chart, closing_end};
@@ -53,12 +50,9 @@ pub use description::{
     FingerDescription, HandDescription, JointDescription, LinkDescription, ObjectDescription, PalmDescription,
     SUBSTEPS, TransmissionDescription,
 };
-pub use error::HandError;
+pub use error::{HandError, positive, within};
 pub use law::{PalmMotion, TendonHand, TendonHandSettings};
 pub use mjcf::{Drive, MjcfOptions, mjcf};
-pub use parts::{Part, parts, scad};
-pub use solid::{Mesh, MeshError};
 pub use space::{DESIGN_LEN, HandParameter, HandRange, KINDS_LEN, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 pub use statics::{Droop, PinchBand, PinchLift, PinchTension, droop, opening_torques, pinch_band, torque_ratio};
 pub use urdf::urdf;
-pub use workshop::{SeatedSpring, Workshop};

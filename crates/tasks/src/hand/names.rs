@@ -71,3 +71,18 @@ pub const FLOOR: &str = "floor";
 pub const CAMERA: &str = "side";
 /// The keyframe of the hand, open and high above the object.
 pub const HOME: &str = "home";
+
+/// The printed part that every digit is joined to.
+pub const PALM_PART: &str = "palm";
+
+/// The printed link after the joints of each of [`KINDS`]; the fingers share theirs.
+pub const LINK_PARTS: [&str; 4] =
+    ["thumb_proximal_link", "thumb_distal_link", "finger_proximal_link", "finger_distal_link"];
+
+/// The printed pulley on the joints of each of [`KINDS`].
+pub const PULLEY_PARTS: [&str; 4] =
+    ["thumb_proximal_pulley", "thumb_distal_pulley", "finger_proximal_pulley", "finger_distal_pulley"];
+
+/// The printed parts on the palm, up to the robot's flange, in the palm's frame.
+pub const MOUNT_PARTS: [&str; 6] =
+    ["line_guide", "spool_drum", "spool_hub", "motor_cage", "flange_plate", "centring_ring"];

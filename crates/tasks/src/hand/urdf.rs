@@ -7,8 +7,7 @@ use std::f64::consts::PI;
 use super::description::{FingerDescription, HandDescription, LinkDescription};
 use super::error::HandError;
 use super::mjcf::link_colour;
-use super::names::{JOINTS, KIND_OF_JOINT, LINK_BODIES, PALM};
-use super::parts::{LINK_PARTS, PALM_PART, PULLEY_PARTS};
+use super::names::{JOINTS, KIND_OF_JOINT, LINK_BODIES, LINK_PARTS, MOUNT_PARTS, PALM, PALM_PART, PULLEY_PARTS};
 use super::space::DESIGN_LEN;
 use super::xml::Element;
 
@@ -16,7 +15,7 @@ use super::xml::Element;
 const BASE: &str = "base";
 
 /// The links with their inertias, joints with their limits, capsules to collide with and the meshes of
-/// [`parts`](super::parts), `NAME.stl` in millimetres beside the file. Frames, names, masses and inertias are those of
+/// the printed parts, `NAME.stl` in millimetres beside the file. Frames, names, masses and inertias are those of
 /// [`mjcf`](super::mjcf); `design` (SI) says how strong and how fast the joints can be.
 pub fn urdf(hand: &HandDescription, design: &[f64; DESIGN_LEN]) -> Result<String, HandError> {
     hand.check()?;
@@ -48,6 +47,7 @@ fn palm(hand: &HandDescription) -> Element {
         .set("name", PALM)
         .with(inertial(palm.mass, middle, palm.inertia()))
         .with(visual(PALM_PART, "0.30 0.32 0.35 1"))
+        .with_all(MOUNT_PARTS.map(|part| visual(part, "0.55 0.57 0.60 1")))
         .with(collision(middle, Element::new("box").set_all("size", &size)))
 }
 
@@ -124,9 +124,7 @@ fn child(link: &str) -> Element {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parts::parts;
     use super::super::space::SEARCHED;
-    use super::super::workshop::{SeatedSpring, Workshop};
     use super::*;
 
     fn text() -> String {
@@ -144,12 +142,15 @@ mod tests {
         for name in JOINTS {
             assert_eq!(named("joint", name), 1, "{name}");
         }
-        let springs = [SeatedSpring { wire: 0.38e-3, outer: 5.26e-3, length: 2.6e-3 }; 4];
-        let parts = parts(&HandDescription::default(), &SEARCHED, &springs, &Workshop::default()).unwrap();
-        for part in &parts {
-            assert_eq!(text.matches(&format!("filename=\"{}.stl\"", part.name)).count(), part.count, "{}", part.name);
+        for (kind, count) in [1, 1, 2, 2].into_iter().enumerate() {
+            for part in [LINK_PARTS[kind], PULLEY_PARTS[kind]] {
+                assert_eq!(text.matches(&format!("filename=\"{part}.stl\"")).count(), count, "{part}");
+            }
         }
-        assert_eq!(text.matches("<mesh ").count(), parts.iter().map(|part| part.count).sum::<usize>());
+        for part in MOUNT_PARTS.into_iter().chain([PALM_PART]) {
+            assert_eq!(text.matches(&format!("filename=\"{part}.stl\"")).count(), 1, "{part}");
+        }
+        assert_eq!(text.matches("<mesh ").count(), 19);
     }
 
     /// All of the tension in one tendon, all of the motor's speed: 75 N and 0.2 mm in 10 ms, over 10.9 mm.

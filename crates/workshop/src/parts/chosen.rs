@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use hwasp_experiment::{Experiment, Method};
+use hwasp_fabrication::{SeatedSpring, Workshop};
 use hwasp_runs::{RunError, saved_json};
 use hwasp_settings::Faults;
 use hwasp_tasks::hand::names::KINDS;
-use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, SeatedSpring, Workshop};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 use thiserror::Error;
 
 use super::list::design_of;

@@ -1,6 +1,7 @@
 //! The parts list as files and programs have it. Everything is in SI units.
 
-use hwasp_tasks::hand::{DESIGN_LEN, SeatedSpring, Workshop};
+use hwasp_fabrication::{SeatedSpring, Verdict, Workshop};
+use hwasp_tasks::hand::DESIGN_LEN;
 use hwasp_training::{Change, Evaluation};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +27,9 @@ pub struct PartsList {
     pub design: Vec<SnappedParameter>,
     /// What became of return and success.
     pub worth: PartsWorth,
+    /// Whether a hand can be built of them, and why; older lists do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
 }
 
 /// Where springs come from.

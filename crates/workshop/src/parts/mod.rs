@@ -11,16 +11,17 @@ mod select;
 mod sheet;
 mod spring;
 mod tune;
+mod verdict;
 
 use std::path::Path;
 
 use crate::design::hand_of;
 use crate::folder::writable;
 use hwasp_core::Executor;
+pub use hwasp_fabrication::{Finding, SeatedSpring, Verdict, Workshop};
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{RunError, encode, io_error};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
-pub use hwasp_tasks::hand::{SeatedSpring, Workshop};
 use hwasp_training::{AssembleError, Assembly, EvaluateError, Reference, TrainError};
 use thiserror::Error;
 
@@ -33,6 +34,7 @@ pub use select::{Reason, Rejected, SelectError, select, unfit};
 pub use sheet::build_sheet;
 pub use spring::{MUSIC_WIRE_MODULUS, TorsionSpring, music_wire_strength};
 pub use tune::{Tuning, TuningFolder};
+pub use verdict::verdict_of_run;
 
 /// Where a run folder has its list, unless it was put elsewhere.
 pub const BUILD: &str = "build";
@@ -146,6 +148,7 @@ impl Snapped {
             trained: self.trained[i],
             built: self.built[i],
         };
+        let verdict = hand_of(spec).map(|hand| verdict::verdict_on(hand, &self.joints, &self.workshop));
         PartsList {
             experiment: spec.name.clone(),
             method: spec.method.name().to_owned(),
@@ -156,6 +159,7 @@ impl Snapped {
             design: space.names().into_iter().enumerate().map(parameter).collect(),
             joints: self.joints.to_vec(),
             worth,
+            verdict,
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use hwasp_fabrication::Workshop;
 use hwasp_tasks::hand::names::{KIND_OF_JOINT, KINDS};
-use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, Workshop};
+use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 use thiserror::Error;
 
 use super::{CatalogueSpring, JointDesign, JointParts, PulleyPart, SpringCatalogue, SpringPart, TorsionSpring};

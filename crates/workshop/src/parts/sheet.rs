@@ -24,6 +24,13 @@ pub fn build_sheet(list: &PartsList) -> String {
     }
     text.push_str(&mounting(list));
     text.push_str(&worth(list));
+    if let Some(verdict) = &list.verdict {
+        let _ = writeln!(text, "\n## Verdict: {}\n", if verdict.buildable { "buildable" } else { "not buildable" });
+        for finding in &verdict.findings {
+            let good = if finding.good { "good" } else { "**not good**" };
+            let _ = writeln!(text, "- {}, {good}: {}", finding.what, markdown(&finding.told));
+        }
+    }
     text
 }
 

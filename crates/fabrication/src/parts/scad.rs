@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use super::super::description::HandDescription;
-use super::super::error::HandError;
-use super::super::names::KINDS;
-use super::super::solid::{HOLE_SEGMENTS, SEGMENTS};
-use super::super::space::DESIGN_LEN;
-use super::super::workshop::{SeatedSpring, Workshop};
 use super::layout::{FRAME, Layout, PIN_CIRCLE};
-use super::{LINK_PARTS, PALM_PART, PULLEY_PARTS};
+use super::palm::hollows;
+use super::parts;
+use crate::error::PartError;
+use crate::solid::{HOLE_SEGMENTS, Outline, SEGMENTS};
+use crate::workshop::{SeatedSpring, Workshop};
+use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_tasks::hand::HandDescription;
+use hwasp_tasks::hand::names::{KINDS, LINK_PARTS, MOUNT_PARTS, PALM_PART, PULLEY_PARTS};
 
 /// What follows from the parameters: `link.rs`, `pulley.rs`, `palm.rs` and `layout.rs` in OpenSCAD's language.
 const MODULES: &str = include_str!("hand.scad");
@@ -20,11 +21,12 @@ pub fn scad(
     design: &[f64; DESIGN_LEN],
     springs: &[SeatedSpring; 4],
     workshop: &Workshop,
-) -> Result<String, HandError> {
+) -> Result<String, PartError> {
     let layout = Layout { workshop, springs };
     layout.check(hand, design)?;
     let mut text = String::from("// An underactuated hand. Lengths in mm, angles in rad.\n\n");
-    let names = [PALM_PART].into_iter().chain(LINK_PARTS).chain(PULLEY_PARTS).collect::<Vec<_>>().join(", ");
+    let names =
+        [PALM_PART].into_iter().chain(LINK_PARTS).chain(PULLEY_PARTS).chain(MOUNT_PARTS).collect::<Vec<_>>().join(", ");
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
@@ -82,6 +84,7 @@ pub fn scad(
         ("hole_pitch", degrees, "between the holes for the fixed legs, degrees"),
         ("print_clearance", 1e3 * workshop.print_clearance, "between parts that move on each other"),
         ("wall", 1e3 * workshop.wall, "the thinnest"),
+        ("pad", 1e3 * workshop.pad, "on the closing side of links"),
         ("flange", 1e3 * layout.flange(), "of a pulley, each"),
         ("plate", 1e3 * layout.plate(), "of a prong beside the longest springs"),
         ("cheek", 1e3 * layout.cheek_width(), "of a link's fork and of the palm's lugs"),
@@ -90,11 +93,65 @@ pub fn scad(
     ] {
         let _ = writeln!(text, "{name} = {}; // {meaning}", number(value));
     }
-    let _ = write!(
+    let _ = writeln!(
         text,
-        "\n$fn = {SEGMENTS}; // segments of a circle\nhole_fn = {HOLE_SEGMENTS}; // of a hole for a leg\n\n{MODULES}"
+        "\n// Segments of a circle, and of a hole for a leg; fewer where the whole hand is shown.\n\
+         $fn = part == \"hand\" ? 24 : {SEGMENTS};\nhole_fn = part == \"hand\" ? 6 : {HOLE_SEGMENTS};\n"
     );
+    text.push_str(
+        "// What the palm is hollowed by on both sides of its middle: from and to in x, y and z.\nhollows = [\n",
+    );
+    for hollow in hollows(hand, &layout) {
+        let spans = [hollow.x, hollow.y, hollow.z].map(|span| list(&span, 1e3));
+        let _ = writeln!(text, "    [{}],", spans.join(", "));
+    }
+    text.push_str("];\n\n");
+    text.push_str(MODULES);
+    mount(hand, design, springs, workshop, &mut text)?;
     Ok(text)
+}
+
+/// What is on the palm: as it was made for this design, layer by layer.
+fn mount(
+    hand: &HandDescription,
+    design: &[f64; DESIGN_LEN],
+    springs: &[SeatedSpring; 4],
+    workshop: &Workshop,
+    text: &mut String,
+) -> Result<(), PartError> {
+    let made = parts(hand, design, springs, workshop)?;
+    text.push_str("\n// What is on the palm follows from the design, too, but not from the parameters above: export anew for others.\n");
+    for part in made.iter().filter(|part| MOUNT_PARTS.contains(&part.name)) {
+        let _ = writeln!(text, "module {}() {{", part.name);
+        for layer in &part.layers {
+            let [low, high] = layer.heights.map(|height| number(1e3 * height));
+            let _ = writeln!(text, "    level({low}, {high}) difference() {{\n        union() {{");
+            layer.add.iter().for_each(|outline| shape(outline, text));
+            text.push_str("        }\n        union() {\n");
+            layer.cut.iter().for_each(|outline| shape(outline, text));
+            text.push_str("        }\n    }\n");
+        }
+        text.push_str("}\n");
+    }
+    for part in MOUNT_PARTS {
+        let _ = writeln!(text, "if (part == \"{part}\" || part == \"hand\") {part}();");
+    }
+    Ok(())
+}
+
+/// An outline: a disc where it is one.
+fn shape(outline: &Outline, text: &mut String) {
+    let corners = outline.len() as f64;
+    let middle = [0, 1].map(|i| outline.iter().map(|corner| corner[i]).sum::<f64>() / corners);
+    let away = |corner: &[f64; 2]| (corner[0] - middle[0]).hypot(corner[1] - middle[1]);
+    let radius = outline.first().map_or(0.0, away);
+    let round = outline.len() == SEGMENTS && outline.iter().all(|corner| (away(corner) - radius).abs() < 1e-9);
+    let _ = if round {
+        writeln!(text, "            disc({}, {});", number(1e3 * radius), list(&middle, 1e3))
+    } else {
+        let points: Vec<String> = outline.iter().map(|corner| list(corner, 1e3)).collect();
+        writeln!(text, "            polygon([{}]);", points.join(", "))
+    };
 }
 
 fn list(values: &[f64], unit: f64) -> String {
@@ -109,14 +166,14 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::space::SEARCHED;
     use super::*;
+    use hwasp_tasks::hand::SEARCHED;
 
     #[test]
     fn parameters_are_at_the_top_and_every_part_can_be_shown() {
         let springs = [SeatedSpring { wire: 0.38e-3, outer: 5.26e-3, length: 2.6e-3 }; 4];
         let text = scad(&HandDescription::default(), &SEARCHED, &springs, &Workshop::default()).unwrap();
-        let (top, rest) = text.split_once("$fn = 96;").unwrap();
+        let (top, rest) = text.split_once("// Segments of a circle").unwrap();
         for line in [
             "radius = [10.9, 9.7, 7.7, 5.3]; ",
             "stiffness = [5.7, 6, 9, 6]; ",
@@ -129,8 +186,8 @@ mod tests {
         ] {
             assert!(top.lines().any(|found| found.starts_with(line)), "{line}:\n{top}");
         }
-        for part in LINK_PARTS.iter().chain(&PULLEY_PARTS).chain(&[PALM_PART]) {
-            assert!(rest.contains(&format!("if (part == \"{part}\")")), "{part}");
+        for part in LINK_PARTS.iter().chain(&PULLEY_PARTS).chain(&[PALM_PART]).chain(&MOUNT_PARTS) {
+            assert!(rest.contains(&format!("if (part == \"{part}\"")), "{part}");
         }
         let balanced = |open: char, close: char| text.matches(open).count() == text.matches(close).count();
         assert!(balanced('(', ')') && balanced('{', '}') && balanced('[', ']'));

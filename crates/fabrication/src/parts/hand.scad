@@ -50,6 +50,7 @@ far = 1000;
 
 // Shapes in the plane of y and z, and their extrusion along x.
 module slice(from, to) rotate([90, 0, 90]) translate([0, 0, from]) linear_extrude(to - from) children();
+module level(from, to) translate([0, 0, from]) linear_extrude(to - from) children();
 module slices(from, to) {
     slice(from, to) children();
     slice(-to, -from) children();
@@ -114,6 +115,11 @@ module link(kind) {
             if (!distal(kind)) slices(cheek_from, half_width) translate([0, length]) polygon(stop(link_radius[kind + 1]));
         }
         slice(-far, far) slot(from + frame + inner, to - frame - inner, inner);
+        // Where the pads go.
+        slice(-far, far) difference() {
+            translate([-far, from]) square([far, to + (distal(kind) ? far : 0) - from]);
+            slot(-far, length, r - pad);
+        }
         slices(prong_from, prong_to) disc(bore);
         for (side = [0, 1]) if (sides[side] > 0) {
             sided(side, pocket_from(kind, side), prong_to) disc(pocket_radius(kind));
@@ -124,7 +130,7 @@ module link(kind) {
             slice(-recess, -prong_from) line_ends(line_end(kind), line_hole, r - wall);
             slice(-prong_to, -recess) line_ends(line_end(kind), knot, r - wall);
         } else {
-            slice(-channel, channel) line_way(radius[kind], radius[kind + 1], length, r, inner);
+            slice(-channel, channel) line_way(radius[kind], radius[kind + 1], length, r - pad, inner);
             slices(cheek_from, half_width) disc(bore, [0, length]);
             for (side = [0, 1]) if (sides[side] > 0)
                 sided(side, cheek_from, half_width) translate([0, length]) fixed_legs(kind + 1);
@@ -158,6 +164,8 @@ module palm() {
                 }
         }
         for (digit = [0:2]) translate([base[digit][0], 0, 0]) digit_room(digit);
+        for (hollow = hollows, side = [0, 1]) sided(side, hollow[0][0], hollow[0][1])
+            translate([hollow[1][0], hollow[2][0]]) square([hollow[1][1] - hollow[1][0], hollow[2][1] - hollow[2][0]]);
     }
 }
 

@@ -1,14 +1,16 @@
 //! The widths of printed parts, as they follow from workshop, springs and hand.
 
-use super::super::description::{HandDescription, LinkDescription};
-use super::super::error::{HandError, positive, within};
-use super::super::names::{DIGITS, KINDS};
-use super::super::solid::around;
-use super::super::space::DESIGN_LEN;
-use super::super::workshop::{SeatedSpring, Workshop};
+use super::mount::{NUT, NUT_UNDER, POSTS};
+use crate::error::PartError;
+use crate::solid::around;
+use crate::workshop::{SeatedSpring, Workshop};
+use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_tasks::hand::names::{DIGITS, KINDS};
+use hwasp_tasks::hand::{HandDescription, LinkDescription};
+use hwasp_tasks::hand::{positive, within};
 
 /// What the parts of a hand are laid out by.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout<'a> {
     pub(super) workshop: &'a Workshop,
     /// The springs of each of [`KINDS`].
@@ -176,10 +178,11 @@ impl Layout<'_> {
     }
 
     /// Whether this hand can be built so.
-    pub(super) fn check(&self, hand: &HandDescription, design: &[f64; DESIGN_LEN]) -> Result<(), HandError> {
+    pub(super) fn check(&self, hand: &HandDescription, design: &[f64; DESIGN_LEN]) -> Result<(), PartError> {
         hand.check()?;
         self.check_springs()?;
         self.check_swing(hand)?;
+        self.check_mount(hand)?;
         for (digit, description) in DIGITS.iter().zip(hand.digits()) {
             self.check_link(&format!("{digit}.proximal"), &description.proximal, 2.0)?;
             self.check_link(&format!("{digit}.distal"), &description.distal, 1.0)?;
@@ -188,7 +191,7 @@ impl Layout<'_> {
         let [first, second] = &hand.fingers;
         if (&first.proximal, &first.distal) != (&second.proximal, &second.distal) {
             let message = "the two fingers have different links, and one part is to serve both".to_owned();
-            return Err(HandError::Part { part: "finger_proximal_link", message });
+            return Err(PartError::Part { part: "finger_proximal_link", message });
         }
         let apart = (first.base[0] - second.base[0]).abs();
         within("|finger1.base[0] - finger2.base[0]|", apart, 2.0 * self.half_width(), 1.0, "m")?;
@@ -204,7 +207,7 @@ impl Layout<'_> {
     }
 
     /// Springs that are springs, and that fit into the room of the workshop.
-    fn check_springs(&self) -> Result<(), HandError> {
+    fn check_springs(&self) -> Result<(), PartError> {
         for (kind, spring) in KINDS.iter().zip(self.springs) {
             for (what, value) in [("wire", spring.wire), ("outer", spring.outer), ("length", spring.length)] {
                 positive(&format!("{kind} spring {what}"), value, "m")?;
@@ -221,38 +224,53 @@ impl Layout<'_> {
     }
 
     /// Room for `ends` joints and a window between them, and for everything that sits beside a pulley.
-    fn check_link(&self, name: &str, link: &LinkDescription, ends: f64) -> Result<(), HandError> {
+    fn check_link(&self, name: &str, link: &LinkDescription, ends: f64) -> Result<(), PartError> {
         let wall = self.workshop.wall;
         room(format!("a joint of {name}, from cheek to cheek,"), 2.0 * self.half_width(), 2.0 * link.radius, NARROWER)?;
+        let hint = "have a thinner `pad`: `hwasp parts RUN --bench pad=…`";
+        room(format!("the pad of {name}"), self.workshop.pad, FRAME - wall, hint)?;
         let pockets = (0..KINDS.len()).map(|kind| self.pocket_radius(kind)).fold(0.0, f64::max);
         let across = (pockets + wall + 2.0 * self.knot()).max(self.lug());
         let across = across.max(self.pin_circle() + self.pin_hole()) + wall;
         room(format!("what is around an axle of {name}"), across, link.radius, SLIMMER)?;
         let least = ends * self.setback(link.radius) + 2.0 * (FRAME + wall) - (2.0 - ends) * link.radius;
-        within(&format!("{name}.length"), link.length, least.max(0.0), 1.0, "m")
+        Ok(within(&format!("{name}.length"), link.length, least.max(0.0), 1.0, "m")?)
     }
 
-    fn check_base(&self, name: &str, base: [f64; 3], hand: &HandDescription) -> Result<(), HandError> {
+    fn check_base(&self, name: &str, base: [f64; 3], hand: &HandDescription) -> Result<(), PartError> {
         let half = hand.palm.half_size;
         let across = half[0] - self.half_width();
         within(&format!("{name}.base[0]"), base[0], -across, across, "m")?;
         let reach = self.reach(hand, hand.joint.range[1] - hand.joint.rest_angle);
         within(&format!("|{name}.base[1]|"), base[1].abs(), reach, half[1] - self.lug(), "m")?;
-        within(&format!("{name}.base[2]"), base[2], 0.0, 0.0, "m")
+        Ok(within(&format!("{name}.base[2]"), base[2], 0.0, 0.0, "m")?)
+    }
+
+    /// The palm has room for screws, nuts and the well, and the spool for the line's ends.
+    fn check_mount(&self, hand: &HandDescription) -> Result<(), PartError> {
+        let half = hand.palm.half_size;
+        within("palm.half_size[0]", half[0], POSTS[0] + NUT[0], 1.0, "m")?;
+        within("palm.half_size[2]", half[2], 0.5 * (NUT_UNDER + NUT[1] + 4.0 * self.workshop.wall), 1.0, "m")?;
+        let inward = self.reach(hand, hand.joint.range[1] - hand.joint.rest_angle);
+        for (name, digit) in DIGITS.iter().zip(hand.digits()) {
+            let least = inward + POSTS[1] + 0.5 * NUT[0] + 4.0 * self.workshop.wall;
+            within(&format!("|{name}.base[1]|"), digit.base[1].abs(), least, 1.0, "m")?;
+        }
+        Ok(within("transmission.spool_radius", hand.transmission.spool_radius, 7.5e-3, 9e-3, "m")?)
     }
 
     /// Links swing clear of the palm's lower face, and the pocket that they swing in leaves a roof.
-    fn check_swing(&self, hand: &HandDescription) -> Result<(), HandError> {
+    fn check_swing(&self, hand: &HandDescription) -> Result<(), PartError> {
         let radius = hand.thumb.proximal.radius.max(hand.fingers[0].proximal.radius);
         let most = (self.setback(radius) / radius).atan();
         within("joint.rest_angle", hand.joint.rest_angle, 0.0, most, "rad")?;
         let inward = hand.joint.range[1] - hand.joint.rest_angle;
         within("joint.range[1] - joint.rest_angle", inward, 0.0, most, "rad")?;
         let least = 0.5 * (self.setback(radius) + 4.0 * self.workshop.wall);
-        within("palm.half_size[2]", hand.palm.half_size[2], least, 1.0, "m")
+        Ok(within("palm.half_size[2]", hand.palm.half_size[2], least, 1.0, "m")?)
     }
 }
 
-fn room(what: String, needed: f64, room: f64, hint: &'static str) -> Result<(), HandError> {
-    if needed <= room { Ok(()) } else { Err(HandError::Room { what, needed, room, hint }) }
+fn room(what: String, needed: f64, room: f64, hint: &'static str) -> Result<(), PartError> {
+    if needed <= room { Ok(()) } else { Err(PartError::Room { what, needed, room, hint }) }
 }

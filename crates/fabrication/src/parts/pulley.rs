@@ -1,7 +1,7 @@
 //! Pulleys: a groove between two flanges.
 
-use super::super::solid::{Layer, disc};
 use super::{Layout, between, is_distal};
+use crate::solid::{Layer, disc};
 
 /// The pulley of a kind of joint, for a line that lies `radius`, m, from its axle, from line's centre to axle's. The one of a
 /// distal joint is pinned to its link, and the line ends in it.

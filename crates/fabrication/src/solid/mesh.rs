@@ -64,9 +64,25 @@ impl Mesh {
         self.triangles.iter().map(|corners| corners.map(|corner| self.vertices[corner]))
     }
 
+    /// Vertices, m, and the indices of the corners of every triangle.
+    pub(super) fn indexed(&self) -> (&[[f64; 3]], &[[usize; 3]]) {
+        (&self.vertices, &self.triangles)
+    }
+
     /// The enclosed volume, m³: the tetrahedra from the origin to every triangle.
     pub fn volume(&self) -> f64 {
         self.triangles().map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
+    }
+
+    /// The middle of what is enclosed, m.
+    pub fn centre(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for [a, b, c] in self.triangles() {
+            let volume = dot(a, cross(b, c)) / 6.0;
+            sum = [0, 1, 2].map(|i| sum[i] + volume * (a[i] + b[i] + c[i]) / 4.0);
+        }
+        let whole = self.volume();
+        sum.map(|sum| sum / whole)
     }
 
     /// The least and the greatest coordinates, m.
@@ -167,6 +183,7 @@ mod tests {
         mesh.check().unwrap();
         assert!((mesh.volume() - 36e-9).abs() < 1e-20);
         assert_eq!(mesh.bounds(), [[0.0; 3], [0.006; 3]]);
+        assert!(mesh.centre().iter().all(|middle| (middle - 0.0015).abs() < 1e-12));
     }
 
     #[test]

@@ -1,43 +1,72 @@
 //! Closed outlines in the plane of y and z, m.
 
 /// Corners in counterclockwise order.
-pub(in crate::hand) type Outline = Vec<[f64; 2]>;
+pub(crate) type Outline = Vec<[f64; 2]>;
 
 /// Segments of a full circle. Of 12 mm radius it is 6 µm off in the middle of a segment.
-pub(in crate::hand) const SEGMENTS: usize = 96;
+pub(crate) const SEGMENTS: usize = 96;
 
 /// Segments of a hole for a wire. Of 1 mm radius it is 9 µm off in the middle of a segment.
-pub(in crate::hand) const HOLE_SEGMENTS: usize = 24;
+pub(crate) const HOLE_SEGMENTS: usize = 24;
 
 /// The regular polygon with its corners on a circle.
-pub(in crate::hand) fn disc(centre: [f64; 2], radius: f64) -> Outline {
+pub(crate) fn disc(centre: [f64; 2], radius: f64) -> Outline {
     arc(centre, radius, 0.0, SEGMENTS, SEGMENTS).collect()
 }
 
 /// The same of fewer segments, for small holes of which there are many.
-pub(in crate::hand) fn hole(centre: [f64; 2], radius: f64) -> Outline {
+pub(crate) fn hole(centre: [f64; 2], radius: f64) -> Outline {
     arc(centre, radius, 0.0, HOLE_SEGMENTS, HOLE_SEGMENTS).collect()
 }
 
 /// The radius of a disc whose straight sides keep outside of a circle.
-pub(in crate::hand) fn around(radius: f64) -> f64 {
+pub(crate) fn around(radius: f64) -> f64 {
     radius / (std::f64::consts::PI / SEGMENTS as f64).cos()
 }
 
 /// Everything within `radius` of the segment from `low` up to `high`, along z.
-pub(in crate::hand) fn slot(y: f64, [low, high]: [f64; 2], radius: f64) -> Outline {
+pub(crate) fn slot(y: f64, [low, high]: [f64; 2], radius: f64) -> Outline {
     let half = SEGMENTS / 2;
     let arc = |z: f64, start: f64| arc([y, z], radius, start, half, SEGMENTS);
     arc(low, std::f64::consts::PI).chain(arc(high, 0.0)).collect()
 }
 
 /// From `low` to `high` in y and z.
-pub(in crate::hand) fn rectangle(y: [f64; 2], z: [f64; 2]) -> Outline {
+pub(crate) fn rectangle(y: [f64; 2], z: [f64; 2]) -> Outline {
     vec![[y[0], z[0]], [y[1], z[0]], [y[1], z[1]], [y[0], z[1]]]
 }
 
+/// Everything within `half` of the segment between two points, with straight ends.
+pub(crate) fn band(from: [f64; 2], to: [f64; 2], half: f64) -> Outline {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    let across = [-along[1] / length * half, along[0] / length * half];
+    let beside = |[a, b]: [f64; 2], side: f64| [a + side * across[0], b + side * across[1]];
+    polygon(&[beside(from, -1.0), beside(to, -1.0), beside(to, 1.0), beside(from, 1.0)])
+}
+
+/// What lies outside of [`slot`] with this radius about y = 0, on the side of negative y, between two heights: to be cut where a pad
+/// goes. `high` is the middle of the slot's upper end.
+pub(crate) fn shaved(high: f64, radius: f64, [from, to]: [f64; 2]) -> Outline {
+    let far = 0.1;
+    let step = std::f64::consts::TAU / SEGMENTS as f64;
+    if to <= high {
+        return rectangle([-far, -radius * (0.5 * step).cos()], [from, to]);
+    }
+    let quarter = SEGMENTS / 4;
+    let arc = arc([0.0, high], radius, std::f64::consts::FRAC_PI_2, quarter, SEGMENTS);
+    // The straight side of the polygon is inside of its circle.
+    let side = -radius * (0.5 * step).cos();
+    let corners: Vec<[f64; 2]> = [[-far, from], [-far, far], [0.0, far], [0.0, high - side]]
+        .into_iter()
+        .chain(arc)
+        .chain([[side, high], [side, from]])
+        .collect();
+    polygon(&corners)
+}
+
 /// Corners in counterclockwise order, whatever order they are given in.
-pub(in crate::hand) fn polygon(corners: &[[f64; 2]]) -> Outline {
+pub(crate) fn polygon(corners: &[[f64; 2]]) -> Outline {
     let mut outline = corners.to_vec();
     if area(&outline) < 0.0 {
         outline.reverse();
@@ -83,7 +112,8 @@ pub(super) fn contains(outline: &[[f64; 2]], [y, z]: [f64; 2]) -> bool {
         == 1
 }
 
-fn edges(outline: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+/// The sides, from corner to corner.
+pub(super) fn edges(outline: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     outline.iter().copied().zip(outline.iter().copied().cycle().skip(1))
 }
 

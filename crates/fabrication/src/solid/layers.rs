@@ -17,24 +17,60 @@ const SHORTEST: f64 = 2e-6;
 /// Triangles that are lower become lines, m: well above what a file resolves.
 const LOWEST: f64 = 5e-8;
 
-/// A layer between two heights along x, m: what is in an outline of `add`, and in none of `cut`.
+/// The axis of its frame along which a solid is stacked. It is upright in the printer, so that no layer hangs over another one by more
+/// than a bridge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Outlines lie in y and z.
+    X,
+    /// Outlines lie in x and y.
+    Z,
+}
+
+impl Axis {
+    /// The point at a height over a point of the plane.
+    pub(crate) fn point(self, height: f64, [a, b]: [f64; 2]) -> [f64; 3] {
+        match self {
+            Self::X => [height, a, b],
+            Self::Z => [a, b, height],
+        }
+    }
+
+    /// The height of a point, and where it is in the plane.
+    pub(crate) fn split(self, [x, y, z]: [f64; 3]) -> (f64, [f64; 2]) {
+        match self {
+            Self::X => (x, [y, z]),
+            Self::Z => (z, [x, y]),
+        }
+    }
+
+    /// The name of the axis and of those of the plane.
+    pub fn names(self) -> [&'static str; 3] {
+        match self {
+            Self::X => ["x", "y", "z"],
+            Self::Z => ["z", "x", "y"],
+        }
+    }
+}
+
+/// A layer between two heights along the axis of its stack, m: what is in an outline of `add`, and in none of `cut`.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::hand) struct Layer {
-    pub(in crate::hand) heights: [f64; 2],
-    pub(in crate::hand) add: Vec<Outline>,
-    pub(in crate::hand) cut: Vec<Outline>,
+pub(crate) struct Layer {
+    pub(crate) heights: [f64; 2],
+    pub(crate) add: Vec<Outline>,
+    pub(crate) cut: Vec<Outline>,
 }
 
 impl Layer {
     /// The same with its round outlines turned about their middles by an angle, rad.
-    pub(in crate::hand) fn turned(&self, angle: f64) -> Self {
+    pub(crate) fn turned(&self, angle: f64) -> Self {
         let all = |outlines: &[Outline]| outlines.iter().map(|outline| turned(outline, angle)).collect();
         Self { heights: self.heights, add: all(&self.add), cut: all(&self.cut) }
     }
 }
 
 /// The solid of layers that lie on each other, from low to high.
-pub(in crate::hand) fn stack(layers: &[Layer]) -> Result<Mesh, InsertionError> {
+pub(crate) fn stack(layers: &[Layer], axis: Axis) -> Result<Mesh, InsertionError> {
     let mut outlines: Vec<&Outline> = Vec::new();
     for outline in layers.iter().flat_map(|layer| layer.add.iter().chain(&layer.cut)) {
         if !outlines.contains(&outline) {
@@ -57,7 +93,7 @@ pub(in crate::hand) fn stack(layers: &[Layer]) -> Result<Mesh, InsertionError> {
         .collect();
     let levels = layers.first().map(|layer| layer.heights[0]).into_iter().chain(layers.iter().map(|l| l.heights[1]));
     let vertices: Vec<[f64; 3]> = levels
-        .flat_map(|x| plane.vertices().map(move |vertex| [x, vertex.position().x, vertex.position().y]))
+        .flat_map(|x| plane.vertices().map(move |vertex| axis.point(x, [vertex.position().x, vertex.position().y])))
         .collect();
     Ok(Mesh::new(&vertices, &surface(&plane, &filled, layers.len())))
 }
@@ -192,7 +228,7 @@ mod tests {
             Layer { heights: [0.0, 0.003], add: vec![plate.clone()], cut: vec![bore.clone(), notch.clone()] },
             Layer { heights: [0.003, 0.010], add: vec![boss.clone()], cut: vec![bore.clone()] },
         ];
-        let mesh = stack(&layers).unwrap();
+        let mesh = stack(&layers, Axis::X).unwrap();
         mesh.check().unwrap();
         let wanted = 0.003 * (area(&plate) - area(&bore) - 0.5 * area(&notch)) + 0.007 * (area(&boss) - area(&bore));
         assert!((mesh.volume() - wanted).abs() < 1e-12 * wanted, "{} of {wanted}", mesh.volume());
@@ -213,7 +249,7 @@ mod tests {
                 Layer { heights: [0.0, 0.003], add: vec![plate.clone(), tip.clone()], cut: vec![] },
                 Layer { heights: [0.003, 0.005], add: vec![tip.clone()], cut: vec![] },
             ];
-            let mesh = stack(&layers).unwrap();
+            let mesh = stack(&layers, Axis::X).unwrap();
             mesh.check().unwrap_or_else(|error| panic!("{off}: {error}"));
             let wanted = 0.003 * area(&plate) + 0.002 * area(&tip);
             assert!((mesh.volume() / wanted - 1.0).abs() < 1e-5, "{off}: {} of {wanted}", mesh.volume());
@@ -222,7 +258,9 @@ mod tests {
 
     #[test]
     fn nothing_is_no_solid() {
-        assert!(stack(&[]).unwrap().check().is_err());
-        assert!(stack(&[Layer { heights: [0.0, 1.0], add: vec![vec![[f64::NAN; 2]; 3]], cut: vec![] }]).is_err());
+        assert!(stack(&[], Axis::X).unwrap().check().is_err());
+        assert!(
+            stack(&[Layer { heights: [0.0, 1.0], add: vec![vec![[f64::NAN; 2]; 3]], cut: vec![] }], Axis::Z).is_err()
+        );
     }
 }

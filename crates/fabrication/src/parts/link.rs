@@ -1,11 +1,11 @@
 //! Links: seen along the axle they have the outline of their capsule; in the default workshop they are 23.6 mm wide.
 
-use super::super::description::HandDescription;
-use super::super::solid::{Layer, Outline, disc, hole, polygon, rectangle, slot};
-use super::super::space::DESIGN_LEN;
 use super::layout::FRAME;
 use super::pulley::pins;
 use super::{Layout, between, is_distal};
+use crate::solid::{Layer, Outline, disc, hole, polygon, rectangle, shaved, slot};
+use hwasp_tasks::hand::DESIGN_LEN;
+use hwasp_tasks::hand::HandDescription;
 
 /// More than any part is large, m.
 const FAR: f64 = 1.0;
@@ -28,6 +28,8 @@ pub(super) fn layers(
     let above = rectangle([-FAR, FAR], [body[1], FAR]);
     let tip = [0.0, length];
     let inner = (radius - FRAME).min(0.5 * (body[1] - body[0]) - FRAME);
+    // The pads end where the simulated link does.
+    let bare = radius - layout.workshop.pad;
     let window = slot(0.0, [body[0] + FRAME + inner, body[1] - FRAME - inner], inner);
     let (prong, prong_end, cheek) = (layout.prong(), layout.prong_end(), layout.cheek());
     let sides = layout.workshop.sides();
@@ -41,7 +43,7 @@ pub(super) fn layers(
         let (away, side) = (x.abs(), usize::from(x < 0.0));
         let mut add = vec![slot(0.0, [0.0, length], radius)];
         let in_prong = (prong..prong_end).contains(&away);
-        let mut cut = vec![window.clone()];
+        let mut cut = vec![window.clone(), shaved(length, bare, body)];
         if !in_prong {
             cut.push(below.clone());
         }
@@ -49,7 +51,7 @@ pub(super) fn layers(
             cut.push(above.clone());
         }
         if !distal && away < layout.channel() {
-            cut.push(channel([design[kind], design[kind + 1]], length, [radius, inner], layout));
+            cut.push(channel([design[kind], design[kind + 1]], length, [bare, inner], layout));
         }
         if in_prong {
             cut.push(disc([0.0, 0.0], layout.bore()));

@@ -51,6 +51,14 @@ pub struct Workshop {
     pub wall: f64,
     /// Diameter of the pins between distal pulleys and their links, m.
     pub pin: f64,
+    /// Thickness of the soft pads on the closing side of links, m.
+    pub pad: f64,
+    /// Density of the printed material, kg/m³.
+    pub density: f64,
+    /// Thickness of what is printed full on every side of a part, m; the rest is filled in part.
+    pub shell: f64,
+    /// By how much springs have to hold every joint open against its weight, N·m.
+    pub droop_margin: f64,
 }
 
 impl Default for Workshop {
@@ -66,8 +74,12 @@ impl Default for Workshop {
             line: 0.0004,
             radius_step: 0.000_05,
             print_clearance: 0.0002,
-            wall: 0.0006,
+            wall: 0.0008,
             pin: 0.001,
+            pad: 0.001,
+            density: 1240.0,
+            shell: 0.0008,
+            droop_margin: 0.0005,
         }
     }
 }
@@ -107,6 +119,14 @@ impl Settings for Workshop {
         fields.quantity("wall", &mut self.wall, length, mm(0.05, 3.0), "the thinnest wall that is printed");
         let meaning = "pins between distal pulleys and their links";
         fields.quantity("pin", &mut self.pin, length, mm(0.1, 5.0), meaning);
+        let meaning = "the soft pads on the closing side of links";
+        fields.quantity("pad", &mut self.pad, length, mm(0.0, 5.0), meaning);
+        let meaning = "of what is printed; PLA has 1240, PETG 1270, ABS 1050 kg/m^3";
+        fields.quantity("density", &mut self.density, Dimension::Density, 100.0..=10_000.0, meaning);
+        let meaning = "what is printed full on every side of a part; the rest is filled in part";
+        fields.quantity("shell", &mut self.shell, length, mm(0.1, 10.0), meaning);
+        let meaning = "by how much springs have to hold every joint open against its weight, palm down";
+        fields.quantity("droop_margin", &mut self.droop_margin, Dimension::Torque, 0.0..=0.1, meaning);
     }
 }
 

@@ -1,2 +1,22 @@
 //! A trained controller on arm and hand.
+//!
+//! [`Rig`](rig::Rig) says where the devices are and what they may; [`Controller`](controller::Controller) is the deterministic
+//! controller of a run; [`Drive`](drive::Drive) is the loop over both, [`safety`] its rules, and [`log`] what is kept of it.
+//! What a person does with them are [`check`], [`calibrate`], [`run`], [`replay`], [`identify`] and [`trials`].
+
 #![forbid(unsafe_code)]
+
+pub mod clock;
+pub mod controller;
+pub mod drive;
+mod error;
+//MC pub mod log;
+pub mod object;
+pub mod pace;
+pub mod record;
+pub mod rig;
+pub mod run;
+pub mod safety;
+pub mod trials;
+
+pub use error::DeployError;

@@ -129,7 +129,8 @@ impl Cause {
         match self {
             Self::ArmStale | Self::ArmFrozen => limits.arm_stale,
             Self::MotorStale => limits.motor_stale,
-            Self::MotorStuck => limits.stuck,
+            // A goal that leaves the spool at 20 mm/s leads it by a millimetre first.
+            Self::MotorStuck => limits.stuck + Duration::from_millis(50),
             Self::OverCurrent => limits.current_time,
             Self::Overrun => limits.overrun,
             Self::ObjectUnseen => limits.object_stale,

@@ -13,7 +13,7 @@ use hwasp_tasks::hand::TransmissionDescription;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fault {
+pub(crate) enum Fault {
     None,
     /// No more packets of the arm.
     ArmSilent,
@@ -68,31 +68,31 @@ pub enum Fault {
 }
 
 /// Arm, motor and time.
-pub struct World {
-    pub begin: Instant,
-    pub now: Instant,
-    pub onset: Duration,
-    pub fault: Fault,
+pub(crate) struct World {
+    pub(crate) begin: Instant,
+    pub(crate) now: Instant,
+    pub(crate) onset: Duration,
+    pub(crate) fault: Fault,
     /// Where the palm is sent and is, in the task's world.
-    pub target: [f64; 3],
-    pub palm: [f64; 3],
-    pub speed: [f64; 3],
-    pub stopped_at: Option<Duration>,
-    pub servos: u32,
-    pub goal: f64,
-    pub wound: f64,
-    pub torque: bool,
-    pub freed_at: Option<Duration>,
+    pub(crate) target: [f64; 3],
+    pub(crate) palm: [f64; 3],
+    pub(crate) speed: [f64; 3],
+    pub(crate) stopped_at: Option<Duration>,
+    pub(crate) servos: u32,
+    pub(crate) goal: f64,
+    pub(crate) wound: f64,
+    pub(crate) torque: bool,
+    pub(crate) freed_at: Option<Duration>,
     kept_arm: Option<ArmState>,
     kept_motor: Option<MotorState>,
     frozen_wound: Option<f64>,
     answers: u32,
-    pub interrupts: Arc<AtomicU32>,
-    pub overran: bool,
+    pub(crate) interrupts: Arc<AtomicU32>,
+    pub(crate) overran: bool,
     /// What is held: winding beyond it needs force. m
-    pub object_at: f64,
-    pub rig: Rig,
-    pub spool: Spool,
+    pub(crate) object_at: f64,
+    pub(crate) rig: Rig,
+    pub(crate) spool: Spool,
     history: Vec<(Instant, ArmState)>,
     answered: Vec<(Instant, MotorState)>,
 }
@@ -100,9 +100,9 @@ pub struct World {
 /// Stiffness of three tendons, N/m.
 const STIFFNESS: f64 = 15_000.0;
 
-pub type Shared = Arc<Mutex<World>>;
+pub(crate) type Shared = Arc<Mutex<World>>;
 
-pub fn world(fault: Fault, onset: Duration) -> Shared {
+pub(crate) fn world(fault: Fault, onset: Duration) -> Shared {
     let (begin, rig) = (Instant::now(), Rig::default());
     let spool = Spool::new(&TransmissionDescription::default(), Winding::Positive, 1.0, 1.0);
     Arc::new(Mutex::new(World {
@@ -138,11 +138,11 @@ fn lock(world: &Shared) -> MutexGuard<'_, World> {
 }
 
 impl World {
-    pub fn age(&self) -> Duration {
+    pub(crate) fn age(&self) -> Duration {
         self.now - self.begin
     }
 
-    pub fn faulty(&self) -> bool {
+    pub(crate) fn faulty(&self) -> bool {
         self.fault != Fault::None && self.age() >= self.onset
     }
 
@@ -203,7 +203,7 @@ impl World {
 }
 
 #[derive(Clone)]
-pub struct VirtualClock(pub Shared);
+pub(crate) struct VirtualClock(pub(crate) Shared);
 
 impl Clock for VirtualClock {
     fn now(&self) -> Instant {
@@ -224,7 +224,7 @@ impl Clock for VirtualClock {
     }
 }
 
-pub struct FakeArm(pub Shared);
+pub(crate) struct FakeArm(pub(crate) Shared);
 
 fn line(device: &str) -> DriverError {
     DriverError::Line { device: device.to_owned(), what: "reading", cause: "the cable is cut".to_owned() }
@@ -286,7 +286,7 @@ impl Arm for FakeArm {
     }
 }
 
-pub struct FakeMotor(pub Shared);
+pub(crate) struct FakeMotor(pub(crate) Shared);
 
 impl FakeMotor {
     fn reachable(world: &World) -> Result<(), DriverError> {
@@ -361,10 +361,10 @@ impl Motor for FakeMotor {
 }
 
 /// Keeps events and steps.
-pub struct Kept {
-    pub world: Shared,
-    pub events: Arc<Mutex<Vec<(f64, Event)>>>,
-    pub steps: Arc<Mutex<Vec<Step>>>,
+pub(crate) struct Kept {
+    pub(crate) world: Shared,
+    pub(crate) events: Arc<Mutex<Vec<(f64, Event)>>>,
+    pub(crate) steps: Arc<Mutex<Vec<Step>>>,
 }
 
 impl Sink for Kept {

@@ -13,6 +13,33 @@ pub struct Pose {
     pub rotation: [f64; 3],
 }
 
+impl Pose {
+    /// How far its position is from another's, m.
+    pub fn distance(&self, other: &Self) -> f64 {
+        (0..3).map(|axis| (self.position[axis] - other.position[axis]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// By how much it is turned from another, rad, 0 to π; turns by 2π are none.
+    pub fn turn(&self, other: &Self) -> f64 {
+        let (a, b) = (quaternion(self.rotation), quaternion(other.rotation));
+        // Of a⁻¹ b: by its imaginary part too, since the real one alone is blind to small turns.
+        let real: f64 = (0..4).map(|i| a[i] * b[i]).sum();
+        let imaginary = [
+            a[0] * b[1] - a[1] * b[0] - a[2] * b[3] + a[3] * b[2],
+            a[0] * b[2] - a[2] * b[0] - a[3] * b[1] + a[1] * b[3],
+            a[0] * b[3] - a[3] * b[0] - a[1] * b[2] + a[2] * b[1],
+        ];
+        2.0 * imaginary.iter().map(|part| part * part).sum::<f64>().sqrt().atan2(real.abs())
+    }
+}
+
+/// The unit quaternion of an axis times an angle, real part first.
+fn quaternion(rotation: [f64; 3]) -> [f64; 4] {
+    let angle = rotation.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let scale = if angle > 0.0 { (angle / 2.0).sin() / angle } else { 0.5 };
+    [(angle / 2.0).cos(), rotation[0] * scale, rotation[1] * scale, rotation[2] * scale]
+}
+
 /// Whether the arm could move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmMode {
@@ -68,4 +95,19 @@ pub trait Arm: Send {
     fn move_to(&mut self, target: &Pose, speed: f64) -> Result<(), DriverError>;
     /// Stands still, and waits for nothing.
     fn stop(&mut self) -> Result<(), DriverError>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_told_between_poses() {
+        let pose = |rotation| Pose { position: [0.0; 3], rotation };
+        let pi = std::f64::consts::PI;
+        assert!((pose([pi, 0.0, 0.0]).turn(&pose([-pi, 0.0, 0.0]))).abs() < 1e-12, "half a turn either way");
+        assert!((pose([0.3, 0.0, 0.0]).turn(&pose([0.1, 0.0, 0.0])) - 0.2).abs() < 1e-12);
+        assert!((pose([0.0, 0.0, 1e-9]).turn(&pose([0.0; 3])) - 1e-9).abs() < 1e-20, "small turns too");
+        assert!((pose([pi, 0.0, 0.0]).turn(&pose([0.0, pi, 0.0])) - pi).abs() < 1e-12, "about z");
+    }
 }

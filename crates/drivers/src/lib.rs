@@ -2,9 +2,12 @@
 #![forbid(unsafe_code)]
 
 mod arm;
+pub mod dynamixel;
 mod error;
 mod motor;
+pub mod ur;
 
 pub use arm::{Arm, ArmMode, ArmState, Pose, Safety};
+pub use dynamixel::{Dynamixel, DynamixelSettings};
 pub use error::DriverError;
 pub use motor::{Motor, MotorState};

@@ -29,7 +29,9 @@
 //! # End
 //! Truncated after 500 steps of 10 ms. An episode whose physics fail is discarded.
 
+mod carried_hand;
 mod film;
+mod hold;
 mod object;
 mod plant;
 mod problem;
@@ -42,9 +44,11 @@ use std::sync::Arc;
 use hwasp_core::{Environment, Law, MakeEnvironment, Robot};
 use thiserror::Error;
 
+pub use carried_hand::CarriedHand;
 pub use film::{Film, Filmed, Stage, Still};
+pub use hold::Hold;
 pub use object::Object;
-pub use plant::GraspPlant;
+pub use plant::{GraspPlant, yielding};
 pub use problem::{engine, settings_of};
 pub use script::Script;
 pub use settings::{GraspReward, GraspSettings, Inertia, Ramp, ShapeKind, Viewpoint};

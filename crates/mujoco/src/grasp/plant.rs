@@ -224,7 +224,7 @@ impl GraspPlant {
 
 /// The travel at which tendons of lengths `taut` pull with `limit` together, if at `wound` they pull more; and their tension
 /// there.
-fn yielding(wound: f64, mut taut: [f64; 3], stiffness: f64, limit: f64) -> (f64, f64) {
+pub fn yielding(wound: f64, mut taut: [f64; 3], stiffness: f64, limit: f64) -> (f64, f64) {
     let tension = |x: f64, taut: &[f64]| stiffness * taut.iter().map(|&length| (x - length).max(0.0)).sum::<f64>();
     if tension(wound, &taut) <= limit {
         return (wound, tension(wound, &taut));

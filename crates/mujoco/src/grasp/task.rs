@@ -5,40 +5,22 @@ use std::sync::Arc;
 use hwasp_core::{EnvSpec, Outcome, Sight, Stream, Task};
 use rand::RngExt;
 
+pub use super::hold::{HOLD_DRIFT, HOLD_HEIGHT, HOLD_STEPS, HOLD_TOUCH};
+use super::hold::{Hold, distance};
 use super::object::Object;
 use super::plant::GraspPlant;
 use super::settings::{GraspSettings, ShapeKind, Viewpoint};
 use crate::engine::View;
 use hwasp_tasks::grasp::env_spec;
 
-/// The steps at the end of an episode over which a grasp has to hold.
-pub const HOLD_STEPS: usize = 100;
-/// How high the object's lowest point has to be over all of them, m.
-pub const HOLD_HEIGHT: f64 = 0.100;
-/// The share of them in which thumb and a finger have to touch the object.
-pub const HOLD_TOUCH: f64 = 0.9;
-/// How far the object may move relative to the palm over them, m.
-pub const HOLD_DRIFT: f64 = 0.010;
-
 /// What a row of stills shows: the last two are half of what success asks for, and all of it.
 const MOMENTS: [&str; 4] = ["contact", "lifted", "raised 5 cm", "raised 10 cm"];
-
-/// One step of the hold.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moment {
-    clearance: f64,
-    touches: bool,
-    /// The object relative to the palm, m.
-    held: [f64; 3],
-}
 
 /// Z-Grasp or 3D-Grasp.
 #[derive(Clone, Debug)]
 pub struct GraspTask {
     settings: GraspSettings,
-    /// The last [`HOLD_STEPS`] steps, step t at t modulo their number.
-    moments: Vec<Moment>,
-    taken: usize,
+    hold: Hold,
     /// From the palm to the object as seen from above, at the end of the last step, m.
     beside: f64,
     /// The names of the shapes, in the order of [`ShapeKind::ALL`].
@@ -55,32 +37,8 @@ impl GraspTask {
     pub(super) fn new(settings: GraspSettings) -> Self {
         let kinds = ShapeKind::EACH.map(|kind| Arc::from(kind.name()));
         let kind = settings.shapes[0] as usize;
-        Self {
-            settings,
-            moments: vec![Moment::default(); HOLD_STEPS],
-            taken: 0,
-            beside: 0.0,
-            kinds,
-            kind,
-            progress: 1.0,
-            view: None,
-        }
+        Self { settings, hold: Hold::default(), beside: 0.0, kinds, kind, progress: 1.0, view: None }
     }
-
-    /// Whether the last steps were a hold.
-    fn success(&self) -> bool {
-        if self.taken < HOLD_STEPS {
-            return false;
-        }
-        let first = self.moments[self.taken % HOLD_STEPS].held;
-        let touches = self.moments.iter().filter(|m| m.touches).count();
-        self.moments.iter().all(|m| m.clearance >= HOLD_HEIGHT && distance(m.held, first) <= HOLD_DRIFT)
-            && touches as f64 >= HOLD_TOUCH * HOLD_STEPS as f64
-    }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// How far one is from being above the other, m.
@@ -106,7 +64,7 @@ impl Task for GraspTask {
         let object = Object::draw(&self.settings, self.progress, rng);
         self.kind = object.kind as usize;
         self.view = None;
-        self.taken = 0;
+        self.hold.start();
         let top = object.bounding_box()[2];
         // Settings were checked: what is drawn from them is a body.
         let started = plant.start(object, top + above, rng);
@@ -136,13 +94,7 @@ impl Task for GraspTask {
     fn reward(&mut self, plant: &GraspPlant, _command: &[f64]) -> f64 {
         let (palm, object, clearance) = (plant.palm(), plant.object_position(), plant.clearance());
         let touching = plant.touching();
-        let digit = |d: usize| touching[2 * d] || touching[2 * d + 1];
-        self.moments[self.taken % HOLD_STEPS] = Moment {
-            clearance,
-            touches: digit(0) && (digit(1) || digit(2)),
-            held: [0, 1, 2].map(|i| object[i] - palm[i]),
-        };
-        self.taken += 1;
+        self.hold.note(clearance, touching, palm, object);
         let reward = &self.settings.reward;
         let distal = [1, 3, 5].iter().filter(|&&link| touching[link]).count();
         let lifted = reward.height.iter().rev().find(|(from, _)| clearance >= *from).map_or(0.0, |(_, worth)| *worth);
@@ -160,13 +112,13 @@ impl Task for GraspTask {
         let clearance = plant.clearance();
         sight.told = format!("{:.0} mm above the floor", (1e3 * clearance).max(0.0));
         // Contacts are computed by the first step; before it there are none.
-        let touches = self.taken > 0 && plant.touching().contains(&true);
+        let touches = self.hold.steps() > 0 && plant.touching().contains(&true);
         let seen = [touches, clearance > 0.002, clearance >= 0.5 * HOLD_HEIGHT, clearance >= HOLD_HEIGHT];
         sight.moments = MOMENTS.into_iter().zip(seen).filter_map(|(name, seen)| seen.then_some(name)).collect();
         Some(sight)
     }
 
     fn outcome(&self) -> Option<Outcome> {
-        Some(Outcome { kind: Arc::clone(&self.kinds[self.kind]), success: self.success() })
+        Some(Outcome { kind: Arc::clone(&self.kinds[self.kind]), success: self.hold.success() })
     }
 }

@@ -1,0 +1,307 @@
+//! A Dynamixel XM430-W210 by protocol 2.0, which goes to positions with a limited current (its mode 5).
+//!
+//! State and goal are one exchange each, through the motor's indirect registers. A motor that lost its power forgets what
+//! these point to, and then reads no voltage: that is told as a restart, never as a position.
+
+mod line;
+mod registers;
+mod settings;
+mod wire;
+mod words;
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+pub use settings::DynamixelSettings;
+pub use words::hardware_error_words;
+
+use crate::error::DriverError;
+use crate::motor::{Motor, MotorState};
+use line::Line;
+use registers::{
+    BAUD_RATE, BAUD_RATES, BUS_WATCHDOG, CURRENT_BASED_POSITION, CURRENT_LIMIT, CURRENT_TICK, DRIVE_MODE, FARTHEST,
+    GOAL_POSITION, HARDWARE_ERROR, OPERATING_MODE, POINTED, POINTERS, POSITION_TICK, PRESENT_POSITION,
+    PROFILE_ACCELERATION, PROFILE_VELOCITY, RETURN_DELAY, Register, SHUTDOWN, SHUTS_DOWN, STATE, STATE_LENGTH,
+    STATUS_LEVEL, TORQUE_ENABLE, TRIPPED, VELOCITY_TICK, VOLTAGE_TICK, pointers, value,
+};
+
+/// The model number of an XM430-W210.
+pub const XM430_W210: u16 = 1030;
+/// Questions for the state ask for up to so many bytes more than it has, in turn, so that a late answer is known by its
+/// length.
+const TURNS: u16 = 4;
+/// How long a motor may take to start.
+const STARTS_WITHIN: Duration = Duration::from_secs(2);
+
+/// Who a motor says to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DynamixelIdentity {
+    /// Its model number; [`XM430_W210`] is the one that this driver knows.
+    pub model: u16,
+    /// The version of its firmware.
+    pub firmware: u8,
+}
+
+/// A setting in the motor that is not as it has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The register.
+    pub name: &'static str,
+    /// What it has.
+    pub found: i32,
+    /// What it has to have.
+    pub wanted: i32,
+}
+
+/// A motor at the end of a serial line.
+#[derive(Debug)]
+pub struct Dynamixel {
+    line: Line,
+    settings: DynamixelSettings,
+    turn: u16,
+    prepared: bool,
+}
+
+impl Dynamixel {
+    /// Opens the port and asks who is there. Changes nothing in the motor.
+    ///
+    /// # Errors
+    /// Settings that cannot be, a port that is not there, a motor that does not answer or is of another model.
+    pub fn open(settings: DynamixelSettings) -> Result<Self, DriverError> {
+        settings.check()?;
+        let mut motor = Self { line: Line::open(&settings)?, settings, turn: 0, prepared: false };
+        let model = motor.identify()?.model;
+        if model == XM430_W210 {
+            return Ok(motor);
+        }
+        let cause = format!("it is of model {model}, and this driver knows an XM430-W210, model {XM430_W210}");
+        Err(motor.line.refused("opening", cause))
+    }
+
+    /// The speed at which the motor answers, if any, bits per second: for a motor whose speed was changed, or never.
+    ///
+    /// # Errors
+    /// Where the port cannot be used.
+    pub fn find_baud(settings: &DynamixelSettings) -> Result<Option<u32>, DriverError> {
+        for baud in BAUD_RATES {
+            // Not every port has every speed.
+            let Ok(mut line) = Line::open(&DynamixelSettings { baud, ..settings.clone() }) else { continue };
+            match line.ping() {
+                Ok(_) => return Ok(Some(baud)),
+                Err(DriverError::Line { device, what, cause }) => {
+                    return Err(DriverError::Line { device, what, cause });
+                }
+                Err(_) => {}
+            }
+        }
+        Line::open(settings).map(|_| None)
+    }
+
+    /// What it was opened with.
+    pub fn settings(&self) -> &DynamixelSettings {
+        &self.settings
+    }
+
+    /// Asks who is there.
+    ///
+    /// # Errors
+    /// Those of the line.
+    pub fn identify(&mut self) -> Result<DynamixelIdentity, DriverError> {
+        let [low, high, firmware] = self.line.ping()?;
+        Ok(DynamixelIdentity { model: u16::from_le_bytes([low, high]), firmware })
+    }
+
+    /// What the motor keeps without power and how it has to be: name, register, value.
+    fn kept(&self) -> [(&'static str, Register, i32); 5] {
+        [
+            ("return delay", RETURN_DELAY, 0),
+            ("drive mode", DRIVE_MODE, 0),
+            ("operating mode", OPERATING_MODE, CURRENT_BASED_POSITION),
+            ("current limit", CURRENT_LIMIT, self.settings.current_ticks()),
+            ("shutdown", SHUTDOWN, SHUTS_DOWN),
+        ]
+    }
+
+    /// What [`Self::prepare`] would change of what the motor keeps without power.
+    ///
+    /// # Errors
+    /// Those of the line.
+    pub fn differences(&mut self) -> Result<Vec<Difference>, DriverError> {
+        let mut differences = Vec::new();
+        for (name, register, wanted) in self.kept() {
+            let found = self.line.get("reading its settings", register)?;
+            if found != wanted {
+                differences.push(Difference { name, found, wanted });
+            }
+        }
+        Ok(differences)
+    }
+
+    /// Takes torque off and sets all that [`Motor`] needs. What the motor keeps is written only where it differs, and read
+    /// again. Returns what was changed of it.
+    ///
+    /// # Errors
+    /// Those of the line, and a motor that does not take what it is told.
+    pub fn prepare(&mut self) -> Result<Vec<Difference>, DriverError> {
+        self.torque(false)?;
+        self.line.set("asking for answers", STATUS_LEVEL, 2)?;
+        let changed = self.differences()?;
+        for (name, register, wanted) in self.kept() {
+            if changed.iter().any(|difference| difference.name == name) {
+                self.line.set("writing its settings", register, wanted)?;
+            }
+        }
+        if let Some(Difference { name, found, wanted }) = self.differences()?.first() {
+            let cause = format!("{name} is {found} although it was set to {wanted}");
+            return Err(self.line.refused("writing its settings", cause));
+        }
+        for register in [PROFILE_ACCELERATION, PROFILE_VELOCITY, BUS_WATCHDOG] {
+            self.line.set("preparing", register, 0)?;
+        }
+        let wanted = pointers();
+        self.line.write("preparing", POINTERS, &wanted)?;
+        if self.line.read("preparing", POINTERS, wanted.len() as u16)? != wanted {
+            return Err(self.line.refused("preparing", "its indirect registers do not keep what they are told"));
+        }
+        self.prepared = true;
+        Ok(changed)
+    }
+
+    /// Sets the motor's speed, bits per second, which it keeps, and goes on at it.
+    ///
+    /// # Errors
+    /// Those of the line and of the settings.
+    pub fn set_baud(&mut self, baud: u32) -> Result<(), DriverError> {
+        let settings = DynamixelSettings { baud, ..self.settings.clone() };
+        settings.check()?;
+        let number = BAUD_RATES.iter().position(|&rate| rate == baud).unwrap_or_default();
+        self.torque(false)?;
+        self.line.set("setting its speed", BAUD_RATE, number as i32)?;
+        self.line = Line::open(&settings)?;
+        self.settings = settings;
+        self.await_answer()
+    }
+
+    /// Lets the motor start anew, which ends hardware errors; torque is off and turns are forgotten then, and
+    /// [`Self::prepare`] has to follow. Never done by itself: whoever calls it has looked at the motor.
+    ///
+    /// # Errors
+    /// Those of the line, and a motor that does not come back within two seconds.
+    pub fn reboot(&mut self) -> Result<(), DriverError> {
+        self.line.reboot()?;
+        self.prepared = false;
+        self.await_answer()
+    }
+
+    fn await_answer(&mut self) -> Result<(), DriverError> {
+        let since = Instant::now();
+        loop {
+            match self.line.ping() {
+                Err(DriverError::Timeout { .. } | DriverError::Protocol { .. }) if since.elapsed() < STARTS_WITHIN => {
+                    thread::sleep(Duration::from_millis(10));
+                }
+                answer => return answer.map(drop),
+            }
+        }
+    }
+
+    /// Refuses a number that is none, or outside of its limits.
+    fn within(&self, name: &'static str, value: f64, [least, most]: [f64; 2], unit: &str) -> Result<(), DriverError> {
+        if (least..=most).contains(&value) {
+            return Ok(());
+        }
+        let limits = format!("{least} to {most} {unit}");
+        Err(DriverError::Value { device: self.line.name().to_owned(), name, value, limits })
+    }
+
+    /// Why a goal was refused: the bus watchdog is what a person can do something about.
+    fn explain(&mut self, error: DriverError) -> DriverError {
+        let refused = matches!(error, DriverError::Refused { .. });
+        if refused && self.line.get("reading its watchdog", BUS_WATCHDOG).is_ok_and(|watchdog| watchdog == TRIPPED) {
+            let silence = self.settings.watchdog.as_millis();
+            return self.line.refused(
+                "setting its goal",
+                format!(
+                    "its bus watchdog stopped it, after {silence} ms without a word; switching torque on starts anew"
+                ),
+            );
+        }
+        error
+    }
+
+    /// Ends with an error where the motor has a hardware error that shuts it down.
+    fn sound(&mut self, what: &'static str) -> Result<(), DriverError> {
+        let bits = self.line.get(what, HARDWARE_ERROR)?;
+        if bits & SHUTS_DOWN == 0 { Ok(()) } else { Err(self.line.failed(what, bits as u8)) }
+    }
+}
+
+impl Motor for Dynamixel {
+    fn state(&mut self) -> Result<MotorState, DriverError> {
+        const WHAT: &str = "reading its state";
+        self.turn = (self.turn + 1) % TURNS;
+        let bytes = self.line.read(WHAT, POINTED, STATE_LENGTH + self.turn)?;
+        let at = Instant::now();
+        let (mut rest, mut values) = (bytes.as_slice(), [0; STATE.len()]);
+        for (register, out) in STATE.iter().zip(&mut values) {
+            let split = rest.split_at_checked(usize::from(register.size));
+            let (head, tail) = split.ok_or_else(|| self.line.protocol(WHAT, "the answer is too short"))?;
+            *out = value(head).unwrap_or_default();
+            rest = tail;
+        }
+        let [torque, errors, current, velocity, position, voltage, temperature] = values;
+        if voltage == 0 {
+            self.prepared = false;
+            let cause = "it was not prepared, or its power failed since: torque is off and turns are forgotten. \
+                         Prepare it, and find its zero again";
+            return Err(self.line.refused(WHAT, cause));
+        }
+        Ok(MotorState {
+            at,
+            position: POSITION_TICK * f64::from(position),
+            velocity: VELOCITY_TICK * f64::from(velocity),
+            current: CURRENT_TICK * f64::from(current),
+            voltage: VOLTAGE_TICK * f64::from(voltage),
+            temperature: f64::from(temperature),
+            hardware_error: errors as u8,
+            torque: torque != 0,
+        })
+    }
+
+    fn goal(&mut self, position: f64, current: f64) -> Result<(), DriverError> {
+        self.within("position", position, self.settings.range, "rad")?;
+        self.within("current", current, [0.0, self.settings.current_limit], "A")?;
+        let ticks = ((position / POSITION_TICK).round() as i32).clamp(-FARTHEST, FARTHEST);
+        let current = (current / CURRENT_TICK) as i16;
+        let goal = [&current.to_le_bytes()[..], &ticks.to_le_bytes()].concat();
+        match self.line.write("setting its goal", POINTED + STATE_LENGTH, &goal) {
+            Ok(false) => Ok(()),
+            Ok(true) => self.sound("setting its goal"),
+            Err(error) => Err(self.explain(error)),
+        }
+    }
+
+    /// Torque goes on where the motor is: its goal becomes its position first, and its watchdog starts anew.
+    fn torque(&mut self, on: bool) -> Result<(), DriverError> {
+        const WHAT: &str = "switching torque on";
+        if !on {
+            return self.line.set("switching torque off", TORQUE_ENABLE, 0).map(drop);
+        }
+
+        self.sound(WHAT)?;
+        if !self.prepared {
+            return Err(self.line.refused(WHAT, "it is not prepared, and may be in another mode; prepare it first"));
+        }
+        self.line.set(WHAT, BUS_WATCHDOG, 0)?;
+        let position = self.line.get(WHAT, PRESENT_POSITION)?;
+        self.line.set(WHAT, GOAL_POSITION, position)?;
+        self.line.set(WHAT, BUS_WATCHDOG, self.settings.watchdog_ticks())?;
+        self.line.set(WHAT, TORQUE_ENABLE, 1)?;
+        // The motor says nothing where an error keeps torque off.
+        if self.line.get(WHAT, TORQUE_ENABLE)? == 0 {
+            self.sound(WHAT)?;
+            return Err(self.line.refused(WHAT, "torque stays off, and no hardware error says why"));
+        }
+        Ok(())
+    }
+}

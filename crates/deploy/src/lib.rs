@@ -6,11 +6,17 @@
 
 #![forbid(unsafe_code)]
 
+pub mod calibrate;
+pub mod check;
 pub mod clock;
 pub mod controller;
+pub mod date;
+pub mod devices;
 pub mod drive;
+#[cfg(feature = "mujoco")]
+pub mod dry;
 mod error;
-//MC pub mod log;
+pub mod log;
 pub mod object;
 pub mod pace;
 pub mod record;

@@ -28,7 +28,7 @@ pub struct Placed {
 }
 
 /// Who puts objects there, and looks whether they were lifted.
-pub trait Stage {
+pub trait Stage: Send {
     /// The object of an episode; none where there are no more.
     ///
     /// # Errors
@@ -129,7 +129,9 @@ fn one(
     // Up first, then aside: what stands on the table is not swept away.
     let up = [x, y, HOME.min(top).max(drive.targets().palm[2])];
     let mut early = run_to(drive, up);
-    let placed = stage.place(index)?;
+    let (placed, ended) = drive.resting(|| stage.place(index));
+    let placed = placed?;
+    early = early.or(ended);
     let start = placed.start.unwrap_or_else(|| {
         let [low, high] = plan.training.height;
         [0.0, 0.0, placed.size[2] + 0.5 * (low + high)]
@@ -155,7 +157,11 @@ fn one(
     if let Finish::Ended(verdict) = finish {
         return Ok(Episode { felt, ended: Some(verdict), ..episode });
     }
-    let held = stage.held(index)?;
+    let (held, ended) = drive.resting(|| stage.held(index));
+    let held = held?;
+    if let Some(verdict) = ended {
+        return Ok(Episode { felt, held, ended: Some(verdict), ..episode });
+    }
     let height = lowest.unwrap_or(drive.targets().palm[2]);
     let ended = match drive.run(&mut SetDown::to(height)) {
         Finish::Done => None,

@@ -7,7 +7,7 @@ mod courier;
 mod motions;
 mod senses;
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use hwasp_drivers::{Arm, Motor};
@@ -21,7 +21,7 @@ use crate::rig::{Frame, Rig};
 use crate::safety::{Limits, Response, Verdict, Watch};
 
 pub use courier::Courier;
-pub use motions::{Approach, Grasp, GraspTold, Motion, Progress, SetDown, Wind};
+pub use motions::{Approach, Grasp, GraspTold, Motion, Progress, Rest, SetDown, Wind};
 pub use senses::Senses;
 
 /// The devices, and what belongs to them.
@@ -406,6 +406,24 @@ impl<'a> Drive<'a> {
             self.record(&Still, late, verdict.response);
         }
         self.free();
+    }
+
+    /// Asks somebody who may take his time, while palm and spool stay as they are; what he said, and what ended the rest early.
+    pub fn resting<T: Send>(&mut self, ask: impl FnOnce() -> T + Send) -> (T, Option<Verdict>) {
+        let answered = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            let asked = scope.spawn(|| {
+                let answer = ask();
+                answered.store(true, Ordering::Release);
+                answer
+            });
+            let finish = self.run(&mut Rest(&answered));
+            let ended = if let Finish::Ended(verdict) = finish { Some(verdict) } else { None };
+            match asked.join() {
+                Ok(answer) => (answer, ended),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        })
     }
 
     /// The motor turns freely.

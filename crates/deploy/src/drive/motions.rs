@@ -1,5 +1,6 @@
 //! What palm and spool do, step by step.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::{Manner, Senses};
@@ -215,6 +216,20 @@ impl Motion for SetDown {
         self.opened += 1;
         let open = targets.travel <= 0.0 && senses.wound < OPEN;
         if open || self.opened >= OPENING || manner.shadow { Progress::Done } else { Progress::Going }
+    }
+}
+
+/// All stays as it is until somebody who is asked has answered.
+#[derive(Clone, Copy, Debug)]
+pub struct Rest<'r>(pub &'r AtomicBool);
+
+impl Motion for Rest<'_> {
+    fn phase(&self) -> Phase {
+        Phase::Held
+    }
+
+    fn step(&mut self, _: &Senses, _: &mut Targets, _: &Manner) -> Progress {
+        if self.0.load(Ordering::Acquire) { Progress::Done } else { Progress::Going }
     }
 }
 

@@ -75,10 +75,12 @@ impl Senses {
 
     /// A broken line is known at once; whatever else went wrong may go right the next time, and shows in the age of the data.
     pub(super) fn arm_failed(&mut self, error: &DriverError) {
+        tracing::debug!("{error}");
         self.arm_lost |= is_line(error);
     }
 
     pub(super) fn motor_failed(&mut self, error: &DriverError) {
+        tracing::debug!("{error}");
         self.motor_lost |= is_line(error);
     }
 

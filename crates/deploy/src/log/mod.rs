@@ -4,10 +4,8 @@
 //! overflows, are told to the rules, which put the object down: a grasp of which nothing is kept teaches nothing, and hides its
 //! faults. Nothing is dangerous about it, so nothing is stopped abruptly.
 
-mod channels;
 mod csv;
 mod mcap;
-mod read;
 mod text;
 
 use std::fs::{self, File};
@@ -24,7 +22,6 @@ use serde::{Deserialize, Serialize};
 use crate::error::{DeployError, file};
 use crate::record::{Event, Sink, Step};
 
-pub use read::{Logged, LoggedObject, Row, read};
 
 /// Steps that may wait for the disk: ten seconds.
 const QUEUE: usize = 1000;
@@ -52,8 +49,8 @@ pub struct About {
     pub spool_radius: f64,
     /// How it is known where the object is.
     pub object: String,
-    /// SHA-256 of `rig.toml`.
-    pub rig: String,
+    /// SHA-256 of what the rig says of its motor.
+    pub motor: String,
     /// The program's version.
     pub version: String,
 }

@@ -79,7 +79,7 @@ pub struct WorldSettings {
 impl Default for WorldSettings {
     fn default() -> Self {
         // The flange's z points out of the arm, the palm's z points up: half a turn about x.
-        Self { position: [0.45, 0.0, 0.0], rotation: [0.0; 3], tool_rotation: [PI, 0.0, 0.0] }
+        Self { position: [-0.42, -0.11, 0.0], rotation: [0.0; 3], tool_rotation: [PI, 0.0, 0.0] }
     }
 }
 

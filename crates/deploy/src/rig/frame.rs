@@ -37,13 +37,6 @@ impl Frame {
     pub fn turned_back(&self, v: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|i| (0..3).map(|j| self.axes[j][i] * v[j]).sum())
     }
-
-    /// By how much a tool is turned from where it should be, rad.
-    pub fn tilt(&self, pose: &Pose) -> f64 {
-        let (found, wanted) = (matrix(pose.rotation), matrix(self.tool));
-        let trace: f64 = (0..3).map(|i| (0..3).map(|j| found[i][j] * wanted[i][j]).sum::<f64>()).sum();
-        (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos()
-    }
 }
 
 /// Rodrigues' formula: the matrix that turns by axis times angle.
@@ -106,11 +99,8 @@ mod tests {
         near(pose.position, [0.3, 0.2, 0.32]);
         near(frame.place(&pose), [0.1, 0.2, 0.3]);
         near(frame.turned_back([0.0, 1.0, 0.0]), [1.0, 0.0, 0.0]);
-        assert!(frame.tilt(&pose) < 1e-6);
         // Half a turn about x, then a quarter about z, is half a turn about the diagonal.
         near(pose.rotation.map(f64::abs), [PI * 0.5_f64.sqrt(), PI * 0.5_f64.sqrt(), 0.0]);
-        let upright = Pose { rotation: [0.0; 3], ..pose };
-        assert!((frame.tilt(&upright) - PI).abs() < 1e-6);
     }
 
     #[test]

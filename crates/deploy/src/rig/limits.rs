@@ -41,7 +41,7 @@ pub struct LimitSettings {
 impl Default for LimitSettings {
     fn default() -> Self {
         Self {
-            workspace: [[-0.15, 0.15], [-0.15, 0.15], [0.06, 0.50]],
+            workspace: [[-0.15, 0.15], [-0.15, 0.15], [0.06, 0.48]],
             margin: 0.02,
             palm_speed: 0.1,
             following: 0.03,

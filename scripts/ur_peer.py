@@ -1,26 +1,36 @@
 #!/usr/bin/env python3
-"""Drives the emulated arm by ur_rtde and by our own driver, and compares what they tell.
+"""Drives the emulated arm by ur_rtde and by our own driver, and compares what they tell. Python 3.8 or newer; needs the network.
 
-    pip install ur-rtde==1.6.5
     cargo build -p hwasp-emulators --bin emulate-ur && cargo build -p hwasp-drivers --example ur_probe
-    scripts/ur_peer.py [--target target/debug] [--address 127.0.0.3]
+    python3 scripts/ur_peer.py [ADDRESS]                     # 127.0.0.3
 
-For CB3 and e-Series: ur_rtde reads state, registers and dashboard, uploads its program, follows 50 poses by servoL, moves back
+ur_rtde is installed into a virtual environment in a temporary folder, where this Python does not have it. For CB3 and e-Series: ur_rtde reads state, registers and dashboard, uploads its program, follows 50 poses by servoL, moves back
 by moveL, stops; our driver does the same over the same emulator. Emulator, ur_rtde and our driver have to agree on every pose.
 Prints a table; exit status 1 if anything differs. ur_rtde knows the vendor's ports alone, so the emulator takes those, at an
 address of this machine that nobody else uses; one that is not 127.0.0.1 lets ur_rtde ask for remote control too.
 """
-
-import argparse
 import json
 import math
+import os
 import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
-import dashboard_client
-import rtde_control
-import rtde_receive
+PINNED = ["ur-rtde==1.6.5"]
+ROOT = Path(__file__).resolve().parent.parent
+BUILT = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
+
+try:
+    import dashboard_client
+    import rtde_control
+    import rtde_receive
+except ImportError:
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        subprocess.run([f"{folder}/bin/pip", "install", "--quiet", *PINNED], check=True)
+        sys.exit(subprocess.run([f"{folder}/bin/python", *sys.argv]).returncode)
 
 PORTS = ["30004", "29999", "30002"]
 NEAR = 2e-5  # m and rad: the last bits of the encoders tremble by 0.4 µrad in each joint
@@ -59,9 +69,10 @@ def apart(a, b):
 
 class Report:
     def __init__(self):
-        self.bad = 0
+        self.bad = self.rows = 0
 
     def row(self, what, good, text):
+        self.rows += 1
         self.bad += not good
         print(f"| {what} | {text} | {'agrees' if good else 'DIFFERS'} |", flush=True)
 
@@ -143,7 +154,7 @@ def compare(report, emulator, probe, address, generation):
     report.near("pose after 50 of our poses, target and our driver", apart(drive["target"], drive["circle"]), 1e-4)
     report.near("pose after our straight move, ours and ur_rtde", apart(drive["back"], receive.getActualTCPPose()))
     upper = rtde_receive.RTDEReceiveInterface(address, -1.0, [], False, True)
-    registers = [upper.getOutputIntRegister(at) for at in range(24, 28)]
+    registers = [upper.getOutputIntRegister(at) for at in range(36, 40)]
     again = ours(probe, address, frequency, "facts")
     report.row("registers of our program, read by both", registers == again["registers"] and registers[0] == 5, str(registers))
     upper.disconnect()
@@ -161,19 +172,16 @@ def compare(report, emulator, probe, address, generation):
 
 
 def main():
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--target", default="target/debug")
-    options.add_argument("--address", default="127.0.0.3")
-    options = options.parse_args()
+    address = sys.argv[1] if len(sys.argv) > 1 else "127.0.0.3"
     report = Report()
     for generation in ["cb3", "e-series"]:
         print(f"\n{generation}\n\n| what | found | |\n|---|---|---|")
-        emulator = Emulator(f"{options.target}/emulate-ur", generation, options.address)
+        emulator = Emulator(BUILT / "emulate-ur", generation, address)
         try:
-            compare(report, emulator, f"{options.target}/examples/ur_probe", options.address, generation)
+            compare(report, emulator, BUILT / "examples" / "ur_probe", address, generation)
         finally:
             report.row("the emulator ends with its input", emulator.close() == 0, "")
-    print(f"\n{report.bad} differences")
+    print(f"\n{report.rows} comparisons, {report.bad} differences")
     sys.exit(report.bad > 0)
 
 

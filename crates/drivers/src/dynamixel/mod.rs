@@ -111,6 +111,31 @@ impl Dynamixel {
         Ok(DynamixelIdentity { model: u16::from_le_bytes([low, high]), firmware })
     }
 
+    /// Reads a register of one, two or four bytes that this driver knows nothing of; the longer ones have a sign.
+    ///
+    /// # Errors
+    /// Those of the line, and a register that the motor does not have.
+    pub fn register(&mut self, address: u16, bytes: u16) -> Result<i32, DriverError> {
+        let register = self.sized("reading a register", address, bytes)?;
+        self.line.get("reading a register", register)
+    }
+
+    /// Writes such a register. The motor itself has to refuse what it must not be told.
+    ///
+    /// # Errors
+    /// Those of the line, and what the motor refuses.
+    pub fn set_register(&mut self, address: u16, bytes: u16, value: i32) -> Result<(), DriverError> {
+        let register = self.sized("writing a register", address, bytes)?;
+        self.line.set("writing a register", register, value).map(drop)
+    }
+
+    fn sized(&self, what: &'static str, at: u16, size: u16) -> Result<Register, DriverError> {
+        if matches!(size, 1 | 2 | 4) {
+            return Ok(Register { at, size });
+        }
+        Err(self.line.refused(what, format!("{size} bytes are not 1, 2 or 4, as registers have")))
+    }
+
     /// What the motor keeps without power and how it has to be: name, register, value.
     fn kept(&self) -> [(&'static str, Register, i32); 5] {
         [

@@ -90,13 +90,13 @@ pub(super) fn find(bytes: &[u8]) -> Found {
 /// Parameters without the 0xFD after each 0xFF 0xFF 0xFD.
 fn unstuffed(bytes: &[u8]) -> Vec<u8> {
     let mut data = Vec::with_capacity(bytes.len());
-    let mut skip = false;
+    let mut stuffed = false;
     for &byte in bytes {
-        if std::mem::take(&mut skip) {
+        if std::mem::take(&mut stuffed) && byte == 0xFD {
             continue;
         }
         data.push(byte);
-        skip = matches!(data[..], [.., 0xFF, 0xFF, 0xFD]);
+        stuffed = matches!(data[..], [.., 0xFF, 0xFF, 0xFD]);
     }
     data
 }

@@ -18,34 +18,11 @@ use crate::error::DriverError;
 /// A straight move has arrived within this, m and rad.
 const ARRIVED: (f64, f64) = (1e-3, 5e-3);
 
-/// What the controller says of itself when it is asked.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UrFacts {
-    /// Major, minor, bugfix and build of the controller.
-    pub controller: [u32; 4],
-    /// Of its software, as the dashboard tells it.
-    pub polyscope: String,
-    /// Of the arm, where the controller tells it.
-    pub serial_number: Option<String>,
-    /// `RUNNING`, `IDLE` …
-    pub robot_mode: String,
-    /// `NORMAL`, `PROTECTIVE_STOP` …
-    pub safety_mode: String,
-    /// `STOPPED`, `PLAYING` … and the program's name.
-    pub program_state: String,
-    /// Whether programs from outside are accepted; `None` where there is no such switch (CB3).
-    pub remote: Option<bool>,
-    /// The tool's point from the flange that is active now, where the controller tells it.
-    pub tcp: Option<Pose>,
-    /// kg that are active now, where the controller tells it.
-    pub payload: Option<f64>,
-}
-
 /// An arm of Universal Robots. It tells its state from [`UrArm::connect`] on, and follows from [`UrArm::start`] on.
 #[derive(Debug)]
 pub struct UrArm {
-    link: Link,
-    settings: UrSettings,
+    pub(super) link: Link,
+    pub(super) settings: UrSettings,
     number: i32,
     beat: i32,
     command: Command,
@@ -73,23 +50,6 @@ impl UrArm {
             stillness: Stillness::default(),
             heard: (0, Instant::now()),
             interrupted: Arc::default(),
-        })
-    }
-
-    /// Asks the dashboard, and the newest packet.
-    pub fn facts(&mut self) -> Result<UrFacts, DriverError> {
-        let reading = self.link.newest()?.1.reading;
-        let mut dashboard = Dashboard::connect(&self.settings)?;
-        Ok(UrFacts {
-            controller: self.link.version,
-            polyscope: dashboard.polyscope()?,
-            serial_number: dashboard.serial_number()?,
-            robot_mode: dashboard.robot_mode()?,
-            safety_mode: dashboard.safety_mode()?,
-            program_state: dashboard.program_state()?,
-            remote: dashboard.remote()?,
-            tcp: reading.tcp,
-            payload: reading.payload,
         })
     }
 
@@ -143,6 +103,7 @@ impl UrArm {
     }
 
     /// Set to true by whoever wants a straight move to end early (Ctrl-C): it stops then, and says that it was interrupted.
+    /// No other begins until it is false again.
     pub fn interrupt(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.interrupted)
     }
@@ -231,6 +192,13 @@ impl UrArm {
         DriverError::Refused { device: self.settings.device(), what, cause: cause.to_owned() }
     }
 
+    fn uninterrupted(&self) -> Result<(), DriverError> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(self.refused("straight move", "it was interrupted"));
+        }
+        Ok(())
+    }
+
     /// Waits until the move is over: it has arrived, or says why not.
     fn arrive(&mut self, target: &Pose, speed: f64, patience: Duration) -> Result<(), DriverError> {
         let what = "straight move";
@@ -242,9 +210,7 @@ impl UrArm {
             let reading = self.link.newest()?.1.reading;
             self.driven(what, &reading)?;
             self.heard(what, &reading)?;
-            if self.interrupted.load(Ordering::Relaxed) {
-                return Err(self.refused(what, "it was interrupted"));
-            }
+            self.uninterrupted()?;
             if reading.taken == self.number && Doing::of(reading.doing) == Some(Doing::Standing) {
                 let (away, turned) = (state.tool.distance(target), state.tool.turn(target));
                 if away <= ARRIVED.0 && turned <= ARRIVED.1 {
@@ -303,6 +269,7 @@ impl Arm for UrArm {
     fn move_to(&mut self, target: &Pose, speed: f64) -> Result<(), DriverError> {
         self.settings.check_target(target)?;
         self.settings.check_speed(speed)?;
+        self.uninterrupted()?;
         let reading = self.fresh()?.reading;
         self.driven("straight move", &reading)?;
         self.target = *target;

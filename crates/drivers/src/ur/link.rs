@@ -10,7 +10,7 @@ use super::late::Lateness;
 use super::reading::Reading;
 use super::registers as r;
 use super::settings::UrSettings;
-use super::talk::{Talk, odd, unasked};
+use super::talk::{OUTPUTS, Talk, odd, unasked};
 use super::tcp;
 use super::wire::{Body, Frame, Frames, kind};
 use crate::arm::Pose;
@@ -53,6 +53,14 @@ pub(super) struct Link {
 impl Link {
     /// Connects, agrees, and has the first packet when it returns.
     pub(super) fn connect(settings: &UrSettings) -> Result<Self, DriverError> {
+        match Self::open(settings, true) {
+            // As the vendor's own client does, from the beginning: a refused recipe leaves a connection of little use.
+            Err(DriverError::Refused { what: OUTPUTS, .. }) => Self::open(settings, false),
+            opened => opened,
+        }
+    }
+
+    fn open(settings: &UrSettings, full: bool) -> Result<Self, DriverError> {
         let stream = tcp::connect(settings, settings.rtde_port, "connecting to RTDE")?;
         let mut talk = Talk::new(stream, settings);
         talk.agree()?;
@@ -63,7 +71,7 @@ impl Link {
                 (settings.device(), format!("1 to {most}: the controller's version is {}", version[0]));
             return Err(DriverError::Value { device, name: "frequency", value: settings.frequency, limits });
         }
-        let (outputs, full) = talk.outputs()?;
+        let outputs = talk.outputs(full)?;
         let inputs = talk.inputs()?;
         talk.start()?;
         let (stream, frames) = talk.end();

@@ -3,6 +3,7 @@
 
 mod dashboard;
 mod drive;
+mod facts;
 mod field;
 mod late;
 mod link;
@@ -16,7 +17,8 @@ mod tcp;
 pub mod wire;
 
 pub use dashboard::Dashboard;
-pub use drive::{UrArm, UrFacts};
+pub use drive::UrArm;
+pub use facts::UrFacts;
 pub use field::FieldType;
 pub use reading::Reading;
 pub use script::program;

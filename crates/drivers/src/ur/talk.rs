@@ -11,6 +11,9 @@ use super::tcp;
 use super::wire::{Body, Frame, Frames, WireError, kind};
 use crate::error::DriverError;
 
+/// What is refused where the controller does not know a name.
+pub(super) const OUTPUTS: &str = "recipe of outputs";
+
 /// Question and answer, before packets flow.
 pub(super) struct Talk<'a> {
     stream: TcpStream,
@@ -47,22 +50,15 @@ impl<'a> Talk<'a> {
         Ok(version)
     }
 
-    /// The number of the recipe, and whether it is the full one.
-    pub(super) fn outputs(&mut self) -> Result<(u8, bool), DriverError> {
-        let what = "recipe of outputs";
-        let mut choose = |full: bool| {
-            let recipe = recipe(full);
-            let names: Vec<&str> = recipe.iter().map(|(name, _)| name.as_str()).collect();
-            let mut body = self.settings.frequency.to_be_bytes().to_vec();
-            body.extend_from_slice(names.join(",").as_bytes());
-            let answer = self.ask(what, kind::OUTPUTS, &body)?;
-            let expected: Vec<_> = recipe.iter().map(|(_, kind)| kind.name()).collect();
-            self.recipe(what, &answer, &names, &expected).map(|number| (number, full))
-        };
-        match choose(true) {
-            Err(DriverError::Refused { .. }) => choose(false),
-            chosen => chosen,
-        }
+    /// The number of the recipe.
+    pub(super) fn outputs(&mut self, full: bool) -> Result<u8, DriverError> {
+        let recipe = recipe(full);
+        let names: Vec<&str> = recipe.iter().map(|(name, _)| name.as_str()).collect();
+        let mut body = self.settings.frequency.to_be_bytes().to_vec();
+        body.extend_from_slice(names.join(",").as_bytes());
+        let answer = self.ask(OUTPUTS, kind::OUTPUTS, &body)?;
+        let expected: Vec<_> = recipe.iter().map(|(_, kind)| kind.name()).collect();
+        self.recipe(OUTPUTS, &answer, &names, &expected)
     }
 
     pub(super) fn inputs(&mut self) -> Result<u8, DriverError> {
@@ -120,6 +116,8 @@ impl<'a> Talk<'a> {
             match self.frames.take().map_err(|cause| odd(self.settings, what, &cause))? {
                 Some(frame) if frame.kind == kind => return Ok(frame.body),
                 Some(frame) if frame.kind == kind::TEXT => continue,
+                // The first packet may overtake the word that they begin.
+                Some(frame) if frame.kind == kind::DATA && kind == kind::START => continue,
                 Some(frame) => return Err(unasked(self.settings, what, frame.kind)),
                 None => {}
             }

@@ -34,9 +34,9 @@ use crate::ur::UrEmulator;
 use crate::world::{FreeSpool, STEP, SpoolState, World};
 use orders::{Device, Order};
 
-/// How far the bench may be behind real time before it gives the time up, s: what spoke in the meantime shall not find its
+/// How far the bench may be behind real time before it gives the time up: what spoke in the meantime shall not find its
 /// watchdog tripped by a bench that hurries.
-const PATIENCE: f64 = 0.010;
+const PATIENCE: Duration = Duration::from_millis(10);
 
 /// What stands behind the emulators.
 #[derive(Debug)]
@@ -184,11 +184,11 @@ pub fn run_bench(mut bench: Bench, input: impl BufRead + Send + 'static, output:
         steps += 1;
         let due = Duration::from_secs_f64(STEP * steps as f64);
         let past = began.elapsed();
-        if past < due {
-            thread::sleep(due - past);
-        } else if (past - due).as_secs_f64() > PATIENCE {
-            bench.lost += (past - due).as_secs_f64();
+        let late = past.saturating_sub(due);
+        if late > PATIENCE {
+            bench.lost += late.as_secs_f64();
             (began, steps) = (Instant::now(), 0);
         }
+        thread::sleep(due.saturating_sub(past));
     }
 }

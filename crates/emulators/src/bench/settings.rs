@@ -133,7 +133,7 @@ impl BenchSettings {
         let address = IpAddr::V4(Ipv4Addr::LOCALHOST);
         let arm = generation
             .map(|generation| {
-                UrEmulator::start(&UrEmulatorSettings { ports, address, ..UrEmulatorSettings::new(generation) })
+                UrEmulator::start(&UrEmulatorSettings { address, ports, ..UrEmulatorSettings::new(generation) })
             })
             .transpose()?;
         let motor = DynamixelEmulator::start(self.id, self.baud)?;

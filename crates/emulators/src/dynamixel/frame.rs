@@ -43,15 +43,15 @@ fn stuff(body: &[u8]) -> Vec<u8> {
     stuffed
 }
 
-/// The body that was stuffed.
+/// The body that was stuffed. A forbidden pattern that nobody stuffed stays: ROBOTIS' own client for Python sends such packets,
+/// and its reader takes them so.
 fn unstuff(stuffed: &[u8]) -> Vec<u8> {
     let mut body: Vec<u8> = Vec::with_capacity(stuffed.len());
-    let mut bytes = stuffed.iter();
+    let mut bytes = stuffed.iter().peekable();
     while let Some(&byte) = bytes.next() {
         body.push(byte);
-        // What follows was added, whatever it is: the checksum has told already that it arrived as it was sent.
         if body.ends_with(&FORBIDDEN) {
-            bytes.next();
+            bytes.next_if_eq(&&0xFD);
         }
     }
     body

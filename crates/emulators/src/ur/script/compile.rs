@@ -1,58 +1,8 @@
-//! Programs as lists of small steps for a machine with a stack.
-
-use std::collections::HashMap;
+//! Makes steps of the text of a program: its statements. What has a value is in `expressions`.
 
 use super::lexer::{Token, words};
+use super::steps::{Function, Program, Step};
 use super::value::Value;
-
-/// One step.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Step {
-    Push(Value),
-    /// Takes the value away that a statement left.
-    Drop,
-    Load(String),
-    /// To the function's own name, or to the global one where there is such.
-    Store(String),
-    StoreLocal(String),
-    StoreGlobal(String),
-    /// Takes value and index.
-    StoreAt(String),
-    At,
-    List(usize),
-    Pose,
-    Negate,
-    Not,
-    Binary(&'static str),
-    Jump(usize),
-    JumpUnless(usize),
-    /// Takes as many values; names for those that were given with one.
-    Call(String, Vec<Option<String>>),
-    Return,
-    Spawn(String, usize),
-    Kill,
-    Join,
-    Halt,
-}
-
-/// A function or a thread.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Function {
-    pub(super) parameters: Vec<String>,
-    pub(super) entry: usize,
-}
-
-/// A program, ready to run.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Program {
-    /// Its own name.
-    pub(crate) name: String,
-    pub(super) steps: Vec<Step>,
-    pub(super) lines: Vec<usize>,
-    pub(super) functions: HashMap<String, Function>,
-    /// Where it begins.
-    pub(super) entry: usize,
-}
 
 /// Makes steps of a text: `def name(): … end`, or single lines.
 pub(crate) fn compile(text: &str) -> Result<Program, String> {
@@ -62,9 +12,9 @@ pub(crate) fn compile(text: &str) -> Result<Program, String> {
     Ok(compiler.program)
 }
 
-struct Compiler {
-    words: Vec<(Token, usize)>,
-    at: usize,
+pub(super) struct Compiler {
+    pub(super) words: Vec<(Token, usize)>,
+    pub(super) at: usize,
     program: Program,
     /// Of each loop around: where it begins, and the jumps that leave it.
     loops: Vec<(usize, Vec<usize>)>,
@@ -75,26 +25,22 @@ struct Compiler {
 /// Deeper than any program that a person writes.
 const DEEPEST: usize = 100;
 
-/// Operators by how tightly they bind, loosest first.
-const LEVELS: [&[&str]; 5] =
-    [&["or", "xor"], &["and"], &["==", "!=", "<", ">", "<=", ">="], &["+", "-"], &["*", "/", "%", "^"]];
-
 impl Compiler {
     fn line(&self) -> usize {
         self.words.get(self.at).or(self.words.last()).map_or(0, |(_, line)| *line)
     }
 
-    fn peek(&self) -> &Token {
+    pub(super) fn peek(&self) -> &Token {
         self.words.get(self.at).map_or(&Token::End, |(token, _)| token)
     }
 
-    fn next(&mut self) -> Token {
+    pub(super) fn next(&mut self) -> Token {
         let token = self.peek().clone();
         self.at += 1;
         token
     }
 
-    fn step(&mut self, step: Step) -> usize {
+    pub(super) fn step(&mut self, step: Step) -> usize {
         let line = self.line();
         self.program.lines.push(line);
         self.program.steps.push(step);
@@ -113,7 +59,7 @@ impl Compiler {
         }
     }
 
-    fn is(&self, word: &str) -> bool {
+    pub(super) fn is(&self, word: &str) -> bool {
         match self.peek() {
             Token::Name(name) => name == word,
             Token::Sign(sign) => *sign == word,
@@ -121,17 +67,17 @@ impl Compiler {
         }
     }
 
-    fn has(&mut self, word: &str) -> bool {
+    pub(super) fn has(&mut self, word: &str) -> bool {
         let is = self.is(word);
         self.at += usize::from(is);
         is
     }
 
-    fn must(&mut self, word: &str) -> Result<(), String> {
+    pub(super) fn must(&mut self, word: &str) -> Result<(), String> {
         if self.has(word) { Ok(()) } else { Err(format!("{word:?} is missing before {:?}", self.peek())) }
     }
 
-    fn name(&mut self) -> Result<String, String> {
+    pub(super) fn name(&mut self) -> Result<String, String> {
         match self.next() {
             Token::Name(name) => Ok(name),
             other => Err(format!("a name is missing before {other:?}")),
@@ -209,7 +155,7 @@ impl Compiler {
     }
 
     /// Goes into something that may hold itself.
-    fn deeper(&mut self, part: fn(&mut Self) -> Result<(), String>) -> Result<(), String> {
+    pub(super) fn deeper(&mut self, part: fn(&mut Self) -> Result<(), String>) -> Result<(), String> {
         if self.depth >= DEEPEST {
             return Err(format!("blocks and brackets are nested deeper than {DEEPEST}"));
         }
@@ -339,116 +285,6 @@ impl Compiler {
         let (_, leave) = self.loops.pop().unwrap_or_default();
         for jump in leave {
             self.land(jump);
-        }
-        Ok(())
-    }
-
-    fn expression(&mut self, level: usize) -> Result<(), String> {
-        let Some(signs) = LEVELS.get(level) else {
-            return self.factor();
-        };
-        self.expression(level + 1)?;
-        while let Some(sign) = signs.iter().find(|sign| self.is(sign)) {
-            self.at += 1;
-            self.expression(level + 1)?;
-            self.step(Step::Binary(sign));
-        }
-        Ok(())
-    }
-
-    fn factor(&mut self) -> Result<(), String> {
-        self.deeper(Self::item)
-    }
-
-    fn item(&mut self) -> Result<(), String> {
-        match self.next() {
-            Token::Number(number) => drop(self.step(Step::Push(Value::Number(number)))),
-            Token::Text(text) => drop(self.step(Step::Push(Value::Text(text)))),
-            Token::Sign("-") => {
-                self.factor()?;
-                self.step(Step::Negate);
-            }
-            Token::Sign("(") => {
-                self.expression(0)?;
-                self.must(")")?;
-            }
-            Token::Sign("[") => {
-                let count = self.elements("]")?;
-                self.step(Step::List(count));
-            }
-            Token::Name(name) => return self.named(name),
-            other => return Err(format!("a value does not begin with {other:?}")),
-        }
-        self.indices()
-    }
-
-    fn named(&mut self, name: String) -> Result<(), String> {
-        match name.as_str() {
-            "True" | "False" => drop(self.step(Step::Push(Value::Truth(name == "True")))),
-            "not" => {
-                // Looser than comparisons, tighter than `and`.
-                self.expression(2)?;
-                self.step(Step::Not);
-                return Ok(());
-            }
-            "run" => {
-                let name = self.name()?;
-                self.must("(")?;
-                let count = self.elements(")")?;
-                self.step(Step::Spawn(name, count));
-            }
-            "p" if self.is("[") => {
-                self.at += 1;
-                match self.elements("]")? {
-                    6 => drop(self.step(Step::Pose)),
-                    // One element: a variable of this name.
-                    1 => {
-                        self.step(Step::Load(name));
-                        self.step(Step::Binary("of"));
-                    }
-                    count => return Err(format!("a pose has 6 elements, not {count}")),
-                }
-            }
-            _ if self.has("(") => {
-                let mut names = Vec::new();
-                while !self.has(")") {
-                    let named = match (self.peek().clone(), self.words.get(self.at + 1)) {
-                        (Token::Name(name), Some((Token::Sign("="), _))) => {
-                            self.at += 2;
-                            Some(name)
-                        }
-                        _ => None,
-                    };
-                    self.expression(0)?;
-                    names.push(named);
-                    if !self.is(")") {
-                        self.must(",")?;
-                    }
-                }
-                self.step(Step::Call(name, names));
-            }
-            _ => drop(self.step(Step::Load(name))),
-        }
-        self.indices()
-    }
-
-    fn elements(&mut self, end: &str) -> Result<usize, String> {
-        let mut count = 0;
-        while !self.has(end) {
-            self.expression(0)?;
-            count += 1;
-            if !self.is(end) {
-                self.must(",")?;
-            }
-        }
-        Ok(count)
-    }
-
-    fn indices(&mut self) -> Result<(), String> {
-        while self.has("[") {
-            self.expression(0)?;
-            self.must("]")?;
-            self.step(Step::At);
         }
         Ok(())
     }

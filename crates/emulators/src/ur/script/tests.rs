@@ -79,7 +79,7 @@ end
 
 #[test]
 fn functions_change_global_names_and_keep_their_own() {
-    let text = r#"
+    let text = r"
 def main():
   global count = 0
   def up():
@@ -91,7 +91,7 @@ def main():
   say(count)
   own = own + 1
 end
-"#;
+";
     let (said, end) = run(text, 3);
     assert_eq!(said, ["2"]);
     assert!(end.unwrap_err().contains("line 11: own is not defined"));

@@ -6,7 +6,8 @@ use std::io::{BufRead, BufReader, PipeReader, PipeWriter, Write};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use hwasp_drivers::{Dynamixel, DynamixelSettings, Motor};
+use hwasp_drivers::ur::{UrArm, UrSettings};
+use hwasp_drivers::{Arm, Dynamixel, DynamixelSettings, Motor};
 use hwasp_emulators::bench::{BenchSettings, run_bench};
 use hwasp_tasks::hand::SEARCHED;
 use serde_json::{Value, json};
@@ -112,6 +113,52 @@ fn a_hand_behind_the_motor() {
     let tension = bench.ask("state")["hand"]["tension"].as_f64().unwrap();
     let told = tension * 0.008 / (3.0 / 2.3);
     assert!((state.current - told).abs() < 0.01 && told > 0.02, "{} A, {told} A", state.current);
+    bench.end();
+}
+
+/// Both drivers over both emulators lift an object: down and up at 0.1 m/s, 20 mm of tendon a second, a command every 8 ms.
+#[test]
+#[ignore = "in real time: `cargo test -p hwasp-emulators --test bench_process -- --ignored` on a machine that does nothing else"]
+fn arm_and_motor_lift_an_object() {
+    // The tool of the emulated arm begins above the origin of the world.
+    let base = [0.347_542, 0.109_15, -0.12];
+    let settings =
+        json!({"arm": "cb3", "hand": {"design": SEARCHED, "tension_limit": 163.0, "base_position": base, "zero": 1.0}});
+    let mut bench = Process::start(&settings.to_string());
+    let mut arm_settings = UrSettings::new("127.0.0.1");
+    let port = |bench: &Process, name: &str| bench.ready["arm"][name].as_u64().unwrap() as u16;
+    (arm_settings.rtde_port, arm_settings.dashboard_port, arm_settings.script_port) =
+        (port(&bench, "rtde"), port(&bench, "dashboard"), port(&bench, "script"));
+    let mut arm = UrArm::connect(&arm_settings).unwrap();
+    arm.start().unwrap();
+    let mut motor = bench.motor();
+    let object = bench.ask("object 0 7")["object"].clone();
+    motor.torque(true).unwrap();
+    let (mut tool, top) = (arm.state().unwrap().tool, object["size"][2].as_f64().unwrap());
+    let low = (top + 0.005).max(0.1) - base[2];
+    let (mut goal, mut lifts, began) = (motor.state().unwrap().position, false, Instant::now());
+    let success = loop {
+        let height = if lifts { low + 0.17 } else { low };
+        let left = height - tool.position[2];
+        tool.position[2] += left.clamp(-0.0008, 0.0008);
+        arm.servo(&tool).unwrap();
+        let state = motor.state().unwrap();
+        if (left == 0.0 || lifts) && state.current < 0.99 {
+            goal += 0.00016 / 0.008;
+        }
+        lifts |= state.current > 0.97;
+        motor.goal(goal, 1.0).unwrap();
+        thread::sleep(Duration::from_millis(8));
+        let seen = bench.ask("state");
+        if seen["hand"]["success"] == json!(true) {
+            break seen;
+        }
+        assert!(began.elapsed() < Duration::from_secs(20), "{seen}");
+    };
+    println!("after {:?}: {success}", began.elapsed());
+    assert!(success["hand"]["clearance"].as_f64().unwrap() > 0.1);
+    arm.end().unwrap();
+    motor.torque(false).unwrap();
     bench.end();
 }
 

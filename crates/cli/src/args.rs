@@ -15,8 +15,8 @@ use hwasp_plot::XAxis;
 use hwasp_report::play;
 
 pub(crate) use deploy::{
-    DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployIdentifyArgs, DeployInitArgs, DeployReplayArgs, DeployRunArgs,
-    DeployTrialsArgs, RigArgs, ShapeArg,
+    DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployIdentifyArgs, DeployInitArgs,
+    DeployReplayArgs, DeployRunArgs, DeployTrialsArgs, RigArgs, ShapeArg,
 };
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};

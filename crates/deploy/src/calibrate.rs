@@ -83,10 +83,8 @@ impl Calibration {
     /// # Errors
     /// The disk's.
     pub fn write(&self, path: &Path) -> Result<(), DeployError> {
-        let text = toml::to_string(self).map_err(|error| DeployError::Calibration {
-            path: path.to_owned(),
-            what: error.to_string(),
-        })?;
+        let text = toml::to_string(self)
+            .map_err(|error| DeployError::Calibration { path: path.to_owned(), what: error.to_string() })?;
         let head = "# Written by `hwasp deploy calibrate`.\n";
         replace(&Disk, path, format!("{head}{text}").as_bytes()).map_err(file("written", path))
     }
@@ -119,7 +117,8 @@ pub fn stands(hand: &HandDescription, design: &[f64]) -> Result<(), DeployError>
         limits: format!("{DESIGN_LEN} of a hand"),
     };
     let design: &[f64; DESIGN_LEN] = design.try_into().map_err(|_| wanted())?;
-    let joints = [("thumb's proximal joint", "thumb's distal joint"), ("fingers' proximal joints", "fingers' distal joints")];
+    let joints =
+        [("thumb's proximal joint", "thumb's distal joint"), ("fingers' proximal joints", "fingers' distal joints")];
     let mut worst: Option<(f64, DeployError)> = None;
     for (finger, (proximal, distal)) in [false, true].into_iter().zip(joints) {
         let found = droop(hand, design, finger);
@@ -170,7 +169,11 @@ impl Motion for Sweep {
         self.left -= 1;
         let way = self.goal - targets.travel;
         targets.travel += way.clamp(-self.step, self.step);
-        if way.abs() <= self.step || current.abs() >= self.most || self.left == 0 { Progress::Done } else { Progress::Going }
+        if way.abs() <= self.step || current.abs() >= self.most || self.left == 0 {
+            Progress::Done
+        } else {
+            Progress::Going
+        }
     }
 
     fn tell(&self, _: &mut Step) {}
@@ -202,17 +205,26 @@ pub fn onset(samples: &[(f64, f64)]) -> Result<Onset, DeployError> {
     let begin = samples.len() / 20;
     let quiet = &samples[begin.min(samples.len())..(samples.len() / 4).max(begin)];
     if quiet.len() < FEWEST {
-        return none("there are too few samples", "see that the motor turns, and that the line is slack when it begins");
+        return none(
+            "there are too few samples",
+            "see that the motor turns, and that the line is slack when it begins",
+        );
     }
     let before = median(quiet.iter().map(|(_, current)| *current));
     let noise = median(quiet.iter().map(|(_, current)| (current - before).abs()));
     let threshold = before + RISE.max(6.0 * noise);
     let rises = |i: &usize| samples[*i..].iter().take(FEWEST).all(|(_, current)| *current > threshold);
     let Some(first) = (begin..samples.len().saturating_sub(FEWEST)).find(rises) else {
-        return none("the tendons never begin to pull", "see that they are on the spool, or wind them up by hand by a turn");
+        return none(
+            "the tendons never begin to pull",
+            "see that they are on the spool, or wind them up by hand by a turn",
+        );
     };
     if first <= begin + quiet.len() / 2 {
-        return none("the tendons pull from the beginning", "see that [motor] winding is right, and that the hand opens freely");
+        return none(
+            "the tendons pull from the beginning",
+            "see that [motor] winding is right, and that the hand opens freely",
+        );
     }
     let from = samples[first].0;
     let line: Vec<_> = samples[first..].iter().take_while(|(wound, _)| wound - from <= LINE).copied().collect();
@@ -378,7 +390,8 @@ mod tests {
     fn a_calibration_is_of_one_motor_and_one_hand() {
         let path = std::env::temp_dir().join(format!("hwasp-calibration-{}.toml", std::process::id()));
         let (rig, design) = (Rig::default(), PAPER_HWASP);
-        let made = Calibration { date: "2026-11-29T12:00:00Z".to_owned(), zero_rad: 2.5, ..Calibration::ideal(&rig, &design) };
+        let made =
+            Calibration { date: "2026-11-29T12:00:00Z".to_owned(), zero_rad: 2.5, ..Calibration::ideal(&rig, &design) };
         made.write(&path).unwrap();
         assert_eq!(Calibration::open(&path, &rig, &design).unwrap(), made);
         let mut other = rig.clone();

@@ -61,7 +61,9 @@ pub fn reach(rig: &Rig) -> Vec<Look> {
         nearest = nearest.min(px.hypot(py));
     }
     let bad = farthest > REACH || nearest < NEAREST;
-    let told = format!("corners of the workspace are up to {farthest:.2} m from the base and down to {nearest:.2} m from its axis");
+    let told = format!(
+        "corners of the workspace are up to {farthest:.2} m from the base and down to {nearest:.2} m from its axis"
+    );
     let hint = if bad { ": bring [world] position nearer, or make the workspace smaller" } else { "" };
     vec![look("reach", if bad { Mark::Bad } else { Mark::Good }, format!("{told}; a UR5 has {REACH} m{hint}"))]
 }
@@ -76,16 +78,29 @@ fn arm(rig: &Rig, looks: &mut Vec<Look>) {
         Ok(facts) => {
             let [major, minor, bugfix, _] = facts.controller;
             let serial = facts.serial_number.as_deref().unwrap_or("not told");
-            looks.push(look("arm", Mark::Good, format!("{}, controller {major}.{minor}.{bugfix}, serial number {serial}", facts.polyscope)));
+            looks.push(look(
+                "arm",
+                Mark::Good,
+                format!("{}, controller {major}.{minor}.{bugfix}, serial number {serial}", facts.polyscope),
+            ));
             let (on, safe) = (facts.robot_mode == "RUNNING", facts.safety_mode == "NORMAL");
             let mode = format!("{}, safety {}, program {}", facts.robot_mode, facts.safety_mode, facts.program_state);
             looks.push(look("arm mode", if on && safe { Mark::Good } else { Mark::Bad }, mode));
             if facts.remote == Some(false) {
-                looks.push(look("arm control", Mark::Bad, "it is in local control: switch the teach pendant to remote control"));
+                looks.push(look(
+                    "arm control",
+                    Mark::Bad,
+                    "it is in local control: switch the teach pendant to remote control",
+                ));
             }
-            let fits = |found: f64, wanted: f64, most: f64| if (found - wanted).abs() <= most { Mark::Good } else { Mark::Odd };
+            let fits = |found: f64, wanted: f64, most: f64| {
+                if (found - wanted).abs() <= most { Mark::Good } else { Mark::Odd }
+            };
             if let Some(payload) = facts.payload {
-                let told = format!("{payload:.2} kg are active, rig.toml says {:.2} kg: its program sets them", rig.arm.payload);
+                let told = format!(
+                    "{payload:.2} kg are active, rig.toml says {:.2} kg: its program sets them",
+                    rig.arm.payload
+                );
                 looks.push(look("payload", fits(payload, rig.arm.payload, 0.05), told));
             }
         }
@@ -113,7 +128,9 @@ fn clock(rig: &Rig, arm: &mut dyn Arm, looks: &mut Vec<Look>) {
     let (Some((at0, clock0)), Some((at1, clock1))) = (first, last) else { return };
     let (ours, theirs) = ((at1 - at0).as_secs_f64(), clock1 - clock0);
     let drift = theirs - ours;
-    let bad = drift.abs() > 0.02 || f64::from(count) < 0.9 * rig.arm.rate.min(125.0) || oldest.as_secs_f64() > rig.limits.arm_stale;
+    let bad = drift.abs() > 0.02
+        || f64::from(count) < 0.9 * rig.arm.rate.min(125.0)
+        || oldest.as_secs_f64() > rig.limits.arm_stale;
     let told = format!(
         "{count} states in a second, up to {:.0} ms old; its clock went {theirs:.3} s in {ours:.3} s of ours",
         1e3 * oldest.as_secs_f64()
@@ -136,7 +153,8 @@ fn motor(rig: &Rig, looks: &mut Vec<Look>) {
         Ok(motor) => motor,
         Err(error) => {
             let other = Dynamixel::find_baud(&settings).ok().flatten();
-            let hint = other.map_or_else(String::new, |baud| format!("; it answers at {baud} bits per second: set [motor] baud"));
+            let hint = other
+                .map_or_else(String::new, |baud| format!("; it answers at {baud} bits per second: set [motor] baud"));
             return looks.push(look("motor", Mark::Bad, format!("{error}{hint}")));
         }
     };
@@ -147,10 +165,17 @@ fn motor(rig: &Rig, looks: &mut Vec<Look>) {
     let as_it_has_to_be = motor.differences();
     let ready = matches!(&as_it_has_to_be, Ok(differences) if differences.is_empty());
     match as_it_has_to_be {
-        Ok(differences) if differences.is_empty() => looks.push(look("motor settings", Mark::Good, "as they have to be")),
+        Ok(differences) if differences.is_empty() => {
+            looks.push(look("motor settings", Mark::Good, "as they have to be"))
+        }
         Ok(differences) => {
-            let told: Vec<_> = differences.iter().map(|d| format!("{} is {}, to be {}", d.name, d.found, d.wanted)).collect();
-            looks.push(look("motor settings", Mark::Odd, format!("{}; `hwasp deploy calibrate` sets them", told.join(", "))));
+            let told: Vec<_> =
+                differences.iter().map(|d| format!("{} is {}, to be {}", d.name, d.found, d.wanted)).collect();
+            looks.push(look(
+                "motor settings",
+                Mark::Odd,
+                format!("{}; `hwasp deploy calibrate` sets them", told.join(", ")),
+            ));
         }
         Err(error) => looks.push(look("motor settings", Mark::Bad, error.to_string())),
     }
@@ -178,7 +203,8 @@ fn motor(rig: &Rig, looks: &mut Vec<Look>) {
         let good = state.hardware_error == 0
             && (lo..=hi).contains(&state.voltage)
             && state.temperature < rig.limits.temperature;
-        let told = format!("{:.1} V, {:.0} °C, hardware error {}", state.voltage, state.temperature, state.hardware_error);
+        let told =
+            format!("{:.1} V, {:.0} °C, hardware error {}", state.voltage, state.temperature, state.hardware_error);
         looks.push(look("motor state", if good { Mark::Good } else { Mark::Bad }, told));
     }
 }

@@ -88,7 +88,9 @@ fn first_state(arm: &mut UrArm) -> Result<ArmState, DriverError> {
     let begin = Instant::now();
     loop {
         match arm.state() {
-            Err(DriverError::Timeout { .. }) if begin.elapsed() < PATIENCE => std::thread::sleep(Duration::from_millis(2)),
+            Err(DriverError::Timeout { .. }) if begin.elapsed() < PATIENCE => {
+                std::thread::sleep(Duration::from_millis(2))
+            }
             answer => return answer,
         }
     }

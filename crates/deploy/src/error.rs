@@ -38,7 +38,9 @@ pub enum DeployError {
         name: String,
     },
     /// A controller that commands what a bench does not move.
-    #[error("the controller commands `{name}`, which the bench does not move: it moves palm_x, palm_y, palm_z and motor")]
+    #[error(
+        "the controller commands `{name}`, which the bench does not move: it moves palm_x, palm_y, palm_z and motor"
+    )]
     Actuator {
         /// The command.
         name: String,

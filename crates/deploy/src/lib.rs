@@ -16,10 +16,14 @@ pub mod drive;
 #[cfg(feature = "mujoco")]
 pub mod dry;
 mod error;
+#[cfg(feature = "mujoco")]
+pub mod identify;
 pub mod log;
 pub mod object;
 pub mod pace;
 pub mod record;
+#[cfg(feature = "mujoco")]
+pub mod replay;
 pub mod rig;
 pub mod run;
 pub mod safety;

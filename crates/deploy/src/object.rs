@@ -144,7 +144,13 @@ mod tests {
         sender.send(br#"{"position":[0.01,0.02,0.03],"time":5.0}"#).unwrap();
         assert_eq!(tracker.first(Duration::from_secs(5)).unwrap(), [0.01, 0.02, 0.03]);
         // Nonsense, what is no number, and what is older than the last word: none of them is news.
-        for word in ["", "{}", r#"{"position":[1,2],"time":6}"#, r#"{"position":[0,0,1e9],"time":7}"#, r#"{"position":[9,9,9],"time":4.5}"#] {
+        for word in [
+            "",
+            "{}",
+            r#"{"position":[1,2],"time":6}"#,
+            r#"{"position":[0,0,1e9],"time":7}"#,
+            r#"{"position":[9,9,9],"time":4.5}"#,
+        ] {
             sender.send(word.as_bytes()).unwrap();
         }
         std::thread::sleep(Duration::from_millis(30));

@@ -144,13 +144,8 @@ fn one(
     }
     drive.begin_episode(index, placed.size, placed.place, placed.shape);
     let object = object(plan, &placed, drive.now())?;
-    let told = GraspTold {
-        object,
-        size: placed.size,
-        encoder: plan.training.encoder,
-        felt_at: plan.felt,
-        steps: plan.steps,
-    };
+    let told =
+        GraspTold { object, size: placed.size, encoder: plan.training.encoder, felt_at: plan.felt, steps: plan.steps };
     let mut grasp = Grasp::new(controller, told);
     let finish = drive.run(&mut grasp);
     let (felt, lowest) = (grasp.felt(), crate::drive::Motion::lowest(&grasp));

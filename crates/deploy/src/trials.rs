@@ -72,7 +72,8 @@ pub fn read(path: &Path) -> Result<Vec<Trial>, DeployError> {
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let bytes = read_limited(path, LARGEST).map_err(|error| DeployError::Log { path: path.to_owned(), what: error.to_string() })?;
+    let bytes = read_limited(path, LARGEST)
+        .map_err(|error| DeployError::Log { path: path.to_owned(), what: error.to_string() })?;
     let text = String::from_utf8_lossy(&bytes);
     let wrong = |line: usize, what: &str| DeployError::Log {
         path: path.to_owned(),
@@ -158,7 +159,15 @@ mod tests {
 
     fn trial(task: &str, shape: ShapeKind, held: bool) -> Trial {
         let (date, run) = ("2026-11-29T12:00:00Z".to_owned(), "results/z-grasp".to_owned());
-        Trial { date, task: task.to_owned(), run, shape, size: [0.06, 0.05, 0.08], held, note: "wet, \"odd\"".to_owned() }
+        Trial {
+            date,
+            task: task.to_owned(),
+            run,
+            shape,
+            size: [0.06, 0.05, 0.08],
+            held,
+            note: "wet, \"odd\"".to_owned(),
+        }
     }
 
     #[test]

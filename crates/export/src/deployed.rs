@@ -67,6 +67,12 @@ impl Deployed {
         &self.params
     }
 
+    /// What the controller commands at these observations, rows one after the other: within the motors' limits.
+    pub fn commands(&self, observations: &[f32]) -> Vec<f64> {
+        let rows = observations.len() / self.env.observation.len().max(1);
+        self.act(observations, &vec![0.0; rows * self.env.state.len()]).0
+    }
+
     /// The design as built, SI.
     pub fn design(&self) -> &[f64] {
         &self.design

@@ -55,7 +55,8 @@ impl Training {
         let written: toml::Table = spec.to_toml().ok().and_then(|text| text.parse().ok()).unwrap_or_default();
         let task = written.get("task").and_then(toml::Value::as_table);
         let word = |key: &str| task.and_then(|task| task.get(key)).and_then(toml::Value::as_str);
-        let felt = word("grasp_felt").and_then(|text| hwasp_core::parse_quantity(text, hwasp_core::Dimension::Torque).ok());
+        let felt =
+            word("grasp_felt").and_then(|text| hwasp_core::parse_quantity(text, hwasp_core::Dimension::Torque).ok());
         let told = word("object_sensed") != Some("tracked") && word("object_sensed").is_some();
         Ok(Self {
             encoder: word("travel_sensed") == Some("encoder"),

@@ -53,7 +53,10 @@ impl Sensor {
         match name {
             "motor_travel" => Some(Self::Travel),
             "motor_torque" => Some(Self::Torque),
-            _ => axis("palm_").map(Self::Palm).or_else(|| axis("object_").map(Self::Object)).or_else(|| axis("size_").map(Self::Size)),
+            _ => axis("palm_")
+                .map(Self::Palm)
+                .or_else(|| axis("object_").map(Self::Object))
+                .or_else(|| axis("size_").map(Self::Size)),
         }
     }
 }

@@ -70,7 +70,9 @@ fn carry(mail: &Mutex<Mail>, motor: &mut dyn Motor) {
             }
             (mail.goal.take(), mail.torque.take())
         };
-        let sent = torque.map_or(Ok(()), |on| motor.torque(on)).and(goal.map_or(Ok(()), |(at, current)| motor.goal(at, current)));
+        let sent = torque
+            .map_or(Ok(()), |on| motor.torque(on))
+            .and(goal.map_or(Ok(()), |(at, current)| motor.goal(at, current)));
         let heard = sent.and_then(|()| motor.state());
         {
             let mut mail = open(mail);

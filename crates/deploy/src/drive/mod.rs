@@ -227,7 +227,9 @@ impl<'a> Drive<'a> {
             self.sense();
             let mut verdict = self.judge(late, motion.object_age(&self.senses, self.bench.clock.now()));
             let mut progress = Progress::Going;
-            if verdict.response == Response::GoOn || verdict.response <= motion.bears() && verdict.response != Response::Hold {
+            if verdict.response == Response::GoOn
+                || verdict.response <= motion.bears() && verdict.response != Response::Hold
+            {
                 let before = self.targets;
                 progress = motion.step(&self.senses, &mut self.targets, &self.manner);
                 if let Progress::NotFinite { controller } = progress {

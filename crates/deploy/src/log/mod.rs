@@ -4,8 +4,10 @@
 //! overflows, are told to the rules, which put the object down: a grasp of which nothing is kept teaches nothing, and hides its
 //! faults. Nothing is dangerous about it, so nothing is stopped abruptly.
 
+mod channels;
 mod csv;
 mod mcap;
+mod read;
 mod text;
 
 use std::fs::{self, File};
@@ -22,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{DeployError, file};
 use crate::record::{Event, Sink, Step};
 
+pub use read::{Logged, LoggedObject, Row, read};
 
 /// Steps that may wait for the disk: ten seconds.
 const QUEUE: usize = 1000;
@@ -98,7 +101,8 @@ impl LogWriter {
     /// # Errors
     /// Where they cannot be begun.
     pub fn to(mcap: Box<dyn Output>, csv: Box<dyn Output>, about: &About, path: PathBuf) -> Result<Self, DeployError> {
-        let unwritten = |error: std::io::Error| DeployError::File { action: "written", path: path.clone(), source: error };
+        let unwritten =
+            |error: std::io::Error| DeployError::File { action: "written", path: path.clone(), source: error };
         let mut mcap = mcap::McapLog::begin(mcap, about, epoch()).map_err(unwritten)?;
         let mut csv = csv::CsvLog::begin(csv, about).map_err(unwritten)?;
         let (queue, entries) = sync_channel(QUEUE);

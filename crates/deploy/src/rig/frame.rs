@@ -93,7 +93,8 @@ mod tests {
     #[test]
     fn places_and_poses_by_hand() {
         // A table that is turned by a quarter about z: its x is the arm's y.
-        let world = WorldSettings { position: [0.5, 0.1, 0.02], rotation: [0.0, 0.0, FRAC_PI_2], ..WorldSettings::default() };
+        let world =
+            WorldSettings { position: [0.5, 0.1, 0.02], rotation: [0.0, 0.0, FRAC_PI_2], ..WorldSettings::default() };
         let frame = Frame::new(&world);
         let pose = frame.pose([0.1, 0.2, 0.3]);
         near(pose.position, [0.3, 0.2, 0.32]);

@@ -64,13 +64,25 @@ impl Settings for LimitSettings {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         let (length, time) = (Dimension::Length, Dimension::Time);
         let [x, y, z] = &mut self.workspace;
-        fields.span("workspace_x", x, length, -2.0..=2.0, "where the palm may be; the controller was trained within ±150 mm");
+        fields.span(
+            "workspace_x",
+            x,
+            length,
+            -2.0..=2.0,
+            "where the palm may be; the controller was trained within ±150 mm",
+        );
         fields.span("workspace_y", y, length, -2.0..=2.0, "the same along y");
         let about = "the same above the table; the open fingers reach 64 mm below the palm";
         fields.span("workspace_z", z, length, 0.0..=2.0, about);
         let about = "how far outside of it the palm is found before it is stopped";
         fields.quantity("margin", &mut self.margin, length, 0.001..=0.2, about);
-        fields.quantity("palm_speed", &mut self.palm_speed, Dimension::Speed, 0.001..=0.5, "the most that the palm moves with");
+        fields.quantity(
+            "palm_speed",
+            &mut self.palm_speed,
+            Dimension::Speed,
+            0.001..=0.5,
+            "the most that the palm moves with",
+        );
         let about = "how far the palm may be from where it was sent";
         fields.quantity("following", &mut self.following, length, 0.002..=0.3, about);
         let about = "the most current that the motor takes for longer than current_time";
@@ -79,12 +91,25 @@ impl Settings for LimitSettings {
         fields.number("temperature", &mut self.temperature, 30.0..=79.0, "°C, of the motor; at 80 it ends by itself");
         let about = "of the motor's supply, from and to";
         fields.span("voltage", &mut self.voltage, Dimension::Voltage, 5.0..=20.0, about);
-        fields.quantity("arm_stale", &mut self.arm_stale, time, 0.01..=0.1, "how old the newest data of the arm may be");
-        fields.quantity("motor_stale", &mut self.motor_stale, time, 0.02..=0.2, "the same of the motor's newest answer");
+        fields.quantity(
+            "arm_stale",
+            &mut self.arm_stale,
+            time,
+            0.01..=0.1,
+            "how old the newest data of the arm may be",
+        );
+        fields.quantity(
+            "motor_stale",
+            &mut self.motor_stale,
+            time,
+            0.02..=0.2,
+            "the same of the motor's newest answer",
+        );
         let about = "for how long the spool may stand still while it should wind and has current to spare";
         fields.quantity("stuck", &mut self.stuck, time, 0.05..=2.0, about);
         fields.quantity("overrun", &mut self.overrun, time, 0.005..=0.2, "how late a step of the controller may begin");
-        let about = "how far the goal of the spool leads what it has wound, in tendon: more would only take longer to unwind";
+        let about =
+            "how far the goal of the spool leads what it has wound, in tendon: more would only take longer to unwind";
         fields.quantity("lead", &mut self.lead, length, 0.001..=0.02, about);
         let about = "for how long an object that is not seen any more is waited for";
         fields.quantity("patience", &mut self.patience, time, 0.0..=60.0, about);

@@ -122,7 +122,10 @@ mod tests {
         let faults = Rig::from_text("rig.toml", text).unwrap_err();
         let told: Vec<_> = faults.faults().iter().map(|fault| fault.message.clone()).collect();
         assert_eq!(told.len(), 5, "{told:?}");
-        assert!(told.iter().any(|message| message == "limits.palm_speed = \"3 m/s\" is outside [0.001 m/s, 0.5 m/s]"), "{told:?}");
+        assert!(
+            told.iter().any(|message| message == "limits.palm_speed = \"3 m/s\" is outside [0.001 m/s, 0.5 m/s]"),
+            "{told:?}"
+        );
         assert!(told.iter().any(|message| message.contains("unknown key `workspce`")), "{told:?}");
     }
 

@@ -48,6 +48,10 @@ impl Default for LogSettings {
 
 impl Settings for LogSettings {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
-        fields.path("folder", &mut self.folder, "the folder of logs and of trials.csv; each run writes an .mcap and a .csv there");
+        fields.path(
+            "folder",
+            &mut self.folder,
+            "the folder of logs and of trials.csv; each run writes an .mcap and a .csv there",
+        );
     }
 }

@@ -120,7 +120,9 @@ impl Cause {
             | Self::SensorNotFinite
             | Self::CommandNotFinite => Response::StopArm,
             // A motor that pulls what it should not, or is not what it was, is freed.
-            Self::InterruptTwice | Self::MotorFree | Self::HardwareError | Self::OverCurrent | Self::Travel => Response::Release,
+            Self::InterruptTwice | Self::MotorFree | Self::HardwareError | Self::OverCurrent | Self::Travel => {
+                Response::Release
+            }
         }
     }
 

@@ -179,7 +179,10 @@ impl Watch {
         let Some(motor) = &glance.motor else {
             return found.is(self.silent.lasts(true, glance.now) > self.limits.motor_stale, Cause::MotorStale);
         };
-        if ![motor.position, motor.velocity, motor.current, motor.voltage, motor.temperature].iter().all(|x| x.is_finite()) {
+        if ![motor.position, motor.velocity, motor.current, motor.voltage, motor.temperature]
+            .iter()
+            .all(|x| x.is_finite())
+        {
             return found.is(true, Cause::SensorNotFinite);
         }
         found.is(glance.now.saturating_duration_since(motor.at) > self.limits.motor_stale, Cause::MotorStale);

@@ -150,7 +150,11 @@ impl World {
     fn tick(&mut self) {
         self.now += Duration::from_millis(1);
         let faulty = self.faulty();
-        let stays = faulty && matches!(self.fault, Fault::ArmStays | Fault::Protective | Fault::Emergency | Fault::ArmIdle | Fault::SafetyStop);
+        let stays = faulty
+            && matches!(
+                self.fault,
+                Fault::ArmStays | Fault::Protective | Fault::Emergency | Fault::ArmIdle | Fault::SafetyStop
+            );
         for axis in 0..3 {
             let before = self.palm[axis];
             if self.stopped_at.is_none() && !stays {

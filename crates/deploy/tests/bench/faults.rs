@@ -64,7 +64,10 @@ fn run(fault: Fault, nan_at: Option<u32>, hold: Duration) -> Outcome {
     let mut sink = Kept { world: Arc::clone(&world), events: Arc::clone(&events), steps: Arc::clone(&steps) };
     let (mut arm, mut motor) = (FakeArm(Arc::clone(&world)), FakeMotor(Arc::clone(&world)));
     let (clock, interrupts) = (VirtualClock(Arc::clone(&world)), Arc::clone(&world.lock().unwrap().interrupts));
-    let (rig, spool) = { let world = world.lock().unwrap(); (world.rig.clone(), world.spool) };
+    let (rig, spool) = {
+        let world = world.lock().unwrap();
+        (world.rig.clone(), world.spool)
+    };
     let manner = Manner { hold, ..Manner::new(&rig, spool, 0.01, 0.0002) };
     let bench = Bench { arm: &mut arm, motor: &mut motor, clock: &clock, interrupts: &interrupts, sink: &mut sink };
     let mut drive = Drive::new(bench, manner);
@@ -132,7 +135,11 @@ fn each_fault_ends_in_the_stated_state_in_the_stated_time() {
         // Delayed data are as old as that at once: the rule finds what was true then.
         let stated = reaction(cause, &limits, STEP) + lasts;
         assert!(after <= stated, "{name}: {after:?} after it, stated {stated:?}");
-        assert!(matches!(outcome.finish, Finish::Ended(Verdict { cause: Some(kept), .. }) if kept == cause), "{name}: {:?}", outcome.finish);
+        assert!(
+            matches!(outcome.finish, Finish::Ended(Verdict { cause: Some(kept), .. }) if kept == cause),
+            "{name}: {:?}",
+            outcome.finish
+        );
         safe(name, fault, &outcome, response, stated);
     }
 }
@@ -156,13 +163,20 @@ fn safe(name: &str, fault: Fault, outcome: &Outcome, response: Response, stated:
                 // The motor held for the time that was set, and was freed then.
                 let freed = outcome.freed.unwrap_or_else(|| panic!("{name}: it holds for ever"));
                 let held = freed.saturating_sub(outcome.decided.unwrap().0);
-                assert!(held >= Duration::from_millis(1980) && held <= Duration::from_millis(2030), "{name}: held {held:?}");
+                assert!(
+                    held >= Duration::from_millis(1980) && held <= Duration::from_millis(2030),
+                    "{name}: held {held:?}"
+                );
                 assert_eq!(outcome.last_phase, Some(Phase::Held), "{name}");
             }
         }
         Response::Release => {
             assert!(outcome.stopped.is_some_and(|after| after <= stated), "{name}");
-            assert!(outcome.freed.is_some_and(|after| after <= stated) && !outcome.holding, "{name}: {:?}", outcome.freed);
+            assert!(
+                outcome.freed.is_some_and(|after| after <= stated) && !outcome.holding,
+                "{name}: {:?}",
+                outcome.freed
+            );
         }
         Response::GoOn | Response::Hold => panic!("{name}: {response} ends nothing"),
     }
@@ -222,7 +236,10 @@ fn a_protective_stop_never_resumes_by_itself() {
     let mut sink = Kept { world: Arc::clone(&world), events, steps };
     let (mut arm, mut motor) = (FakeArm(Arc::clone(&world)), FakeMotor(Arc::clone(&world)));
     let (clock, interrupts) = (VirtualClock(Arc::clone(&world)), Arc::clone(&world.lock().unwrap().interrupts));
-    let (rig, spool) = { let world = world.lock().unwrap(); (world.rig.clone(), world.spool) };
+    let (rig, spool) = {
+        let world = world.lock().unwrap();
+        (world.rig.clone(), world.spool)
+    };
     let manner = Manner { hold: Duration::from_secs(1), ..Manner::new(&rig, spool, 0.01, 0.0002) };
     let bench = Bench { arm: &mut arm, motor: &mut motor, clock: &clock, interrupts: &interrupts, sink: &mut sink };
     let mut drive = Drive::new(bench, manner);

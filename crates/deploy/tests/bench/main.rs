@@ -2,3 +2,5 @@
 
 mod doubles;
 mod faults;
+mod grasps;
+mod logs;

@@ -36,7 +36,8 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
     let spool = Spool::new(&hand.transmission, rig.motor.winding, zero, 1.0);
     let manner = Manner::new(&rig, spool, deployed.env().time_step, hand.transmission.step_limit);
     let mut sink = NoSink;
-    let bench = Bench { arm: &mut arm, motor: &mut motor, clock: &SystemClock, interrupts: &interrupts, sink: &mut sink };
+    let bench =
+        Bench { arm: &mut arm, motor: &mut motor, clock: &SystemClock, interrupts: &interrupts, sink: &mut sink };
     let mut drive = Drive::new(bench, manner);
     drive.grip().map_err(DeployError::from)?;
     if let Some(mass) = args.weight {

@@ -23,7 +23,10 @@ pub(crate) fn run(args: &DeployCheckArgs) -> Result<(), Failure> {
     output::print(&text)?;
     let bad = looks.iter().filter(|look| look.mark == Mark::Bad).count();
     if bad > 0 {
-        return Err(Failure::input(format!("{bad} of {} looks are bad: nothing should move before they are mended", looks.len())));
+        return Err(Failure::input(format!(
+            "{bad} of {} looks are bad: nothing should move before they are mended",
+            looks.len()
+        )));
     }
     Ok(())
 }

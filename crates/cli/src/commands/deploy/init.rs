@@ -13,7 +13,9 @@ pub(crate) fn run(args: &DeployInitArgs) -> Result<(), Failure> {
     let path = args.out.display();
     let written = File::create_new(&args.out).and_then(|mut file| file.write_all(template().as_bytes()));
     written.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::input(format!("{path} exists already, and is not overwritten")).hint(OTHER_FILE),
+        ErrorKind::AlreadyExists => {
+            Failure::input(format!("{path} exists already, and is not overwritten")).hint(OTHER_FILE)
+        }
         _ => Failure::from(error).hint(OTHER_FILE),
     })?;
     Ok(output::print(&format!(

@@ -4,7 +4,11 @@
 mod bench;
 mod calibrate;
 mod check;
+#[cfg(feature = "mujoco")]
+mod identify;
 mod init;
+#[cfg(feature = "mujoco")]
+mod replay;
 mod run;
 mod trials;
 
@@ -32,7 +36,12 @@ pub(crate) fn run(args: &DeployArgs, catalogue: &Catalogue) -> Result<(), Failur
         DeployCommand::Bench { settings } => bench::run(settings),
         #[cfg(not(feature = "mujoco"))]
         DeployCommand::Bench { .. } => Err(no_engine()),
-        DeployCommand::Replay(_) | DeployCommand::Identify(_) => Err(Failure::input("not there yet")),
+        #[cfg(feature = "mujoco")]
+        DeployCommand::Replay(args) => replay::run(args, catalogue),
+        #[cfg(feature = "mujoco")]
+        DeployCommand::Identify(args) => identify::run(args, catalogue),
+        #[cfg(not(feature = "mujoco"))]
+        DeployCommand::Replay(_) | DeployCommand::Identify(_) => Err(no_engine()),
     }
 }
 

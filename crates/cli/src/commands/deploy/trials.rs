@@ -17,7 +17,8 @@ pub(crate) fn run(args: &DeployTrialsArgs, catalogue: &Catalogue) -> Result<(), 
             let spec = hwasp_runs::saved_experiment(run_folder(run)?, &[], catalogue).map_err(Failure::input)?;
             let size = std::array::from_fn(|i| args.size.get(i).map_or(0.0, |mm| 1e-3 * mm));
             let (task, run) = (spec.task.name().to_owned(), run.display().to_string());
-            let trial = Trial { date: date::now(), task, run, shape: shape.kind(), size, held, note: args.note.clone() };
+            let trial =
+                Trial { date: date::now(), task, run, shape: shape.kind(), size, held, note: args.note.clone() };
             add(&args.table, &[trial])
         }
         _ => read(&args.table),
@@ -38,7 +39,11 @@ pub(super) fn table(rates: &[Rate]) -> String {
         let paper = paper.map_or_else(|| "-".to_owned(), |share| format!("{share:.0} %"));
         let (low, high) = (100.0 * interval.low, 100.0 * interval.high);
         let of = format!("{held} of {trials}");
-        let _ = writeln!(text, "  {task:<10} {:<10} {of:<12} {share:>3.0} %   {low:>3.0} to {high:>3.0} %     {paper:>6}", shape.name());
+        let _ = writeln!(
+            text,
+            "  {task:<10} {:<10} {of:<12} {share:>3.0} %   {low:>3.0} to {high:>3.0} %     {paper:>6}",
+            shape.name()
+        );
     }
     text
 }

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod deploy;
 mod designs;
 mod parse;
 mod studies;
@@ -13,6 +14,10 @@ use hwasp_experiment::Method;
 use hwasp_plot::XAxis;
 use hwasp_report::play;
 
+pub(crate) use deploy::{
+    DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployIdentifyArgs, DeployInitArgs,
+    DeployReplayArgs, DeployRunArgs, DeployTrialsArgs, RigArgs, ShapeArg,
+};
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
 pub(crate) use studies::{CompareArgs, ReproduceArgs};
@@ -82,6 +87,8 @@ pub(crate) enum Command {
     /// Write what a run comes to in files that other programs read: the controller as ONNX, safetensors and JSON; a hand
     /// as MJCF, URDF, STL and OpenSCAD
     Export(ExportArgs),
+    /// Drive the built hand on an arm with a run's controller: check, calibrate, run, and learn from what was logged
+    Deploy(DeployArgs),
     /// Choose pulleys and springs for a run's hand, simulate it with them, and train its controller further on them
     Parts(PartsArgs),
     /// Simulate a run's design with every parameter off by its manufacturing error: which part has to be precise

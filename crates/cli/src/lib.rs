@@ -66,6 +66,7 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::Eval(eval) => commands::eval::run(eval, catalogue),
         Command::Design(design) => commands::design::run(design, catalogue),
         Command::Export(export) => commands::export::run(export, catalogue),
+        Command::Deploy(deploy) => commands::deploy::run(deploy, catalogue),
         Command::Parts(parts) => commands::parts::run(parts, catalogue),
         Command::Tolerances(tolerances) => commands::tolerances::run(tolerances, catalogue),
         Command::Replay(replay) => commands::replay::run(replay, catalogue),

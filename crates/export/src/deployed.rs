@@ -1,18 +1,22 @@
 //! The trained robot where it has to work.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use hwasp_core::{Actor, EnvSpec, HardwarePolicy, Normalizer, PolicySpec};
 use hwasp_diff::Activation;
-use hwasp_experiment::Experiment;
+use hwasp_experiment::{Catalogue, Experiment};
+use hwasp_runs::SavedRun;
 use hwasp_training::{AssembleError, Assembly, World};
+
+use crate::error::ExportError;
 
 /// Rows in which [`Deployed::act`] works.
 const BLOCK: usize = 64;
 
 /// The deterministic controller on the design as built: what `hwasp eval` evaluates. It is the same for all methods, for
 /// nothing of the design is left to move: where the design was in the graph or in the action, it is fixed now.
-pub(super) struct Deployed {
+pub struct Deployed {
     pub(super) spec: Experiment,
     pub(super) world: World,
     pub(super) env: EnvSpec,
@@ -37,6 +41,43 @@ pub(super) struct Layer<'a> {
 }
 
 impl Deployed {
+    /// That of a run folder.
+    pub fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, ExportError> {
+        let saved = SavedRun::open(path, catalogue)?;
+        Ok(Self::new(saved.assembly(), &saved.params()?)?)
+    }
+
+    /// The experiment of the run.
+    pub fn spec(&self) -> &Experiment {
+        &self.spec
+    }
+
+    /// What the controller sees and commands: names, units, limits, period.
+    pub fn env(&self) -> &EnvSpec {
+        &self.env
+    }
+
+    /// The policy that acts.
+    pub fn policy(&self) -> &HardwarePolicy {
+        &self.policy
+    }
+
+    /// Its parameters.
+    pub fn params(&self) -> &[f32] {
+        &self.params
+    }
+
+    /// What the controller commands at these observations, rows one after the other: within the motors' limits.
+    pub fn commands(&self, observations: &[f32]) -> Vec<f64> {
+        let rows = observations.len() / self.env.observation.len().max(1);
+        self.act(observations, &vec![0.0; rows * self.env.state.len()]).0
+    }
+
+    /// The design as built, SI.
+    pub fn design(&self) -> &[f64] {
+        &self.design
+    }
+
     pub(super) fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
         let world = assembly.worlds.deployment.clone();
         let design = assembly.worlds.training.law.as_built(&assembly.policy.design(params));
@@ -54,7 +95,7 @@ impl Deployed {
     }
 
     /// What the controller sees of an observation.
-    pub(super) fn normalizer(&self) -> Normalizer {
+    pub fn normalizer(&self) -> Normalizer {
         self.policy.normalizer(&self.params)
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hwasp_experiment::{Catalogue, Experiment};
 use hwasp_problem::{ModelFile, ModelFormat};
-use hwasp_runs::{DESIGN, RunError, SavedRun, saved_experiment};
+use hwasp_runs::{DESIGN, RunError, saved_experiment};
 use hwasp_tasks::hand::HandDescription;
 use hwasp_workshop::design::{DesignReport, hand_of};
 use hwasp_workshop::parts::{ChosenParts, Verdict};
@@ -42,9 +42,7 @@ impl Source {
         if let Some(deployed) = self.deployed.get() {
             return Ok(deployed);
         }
-        let saved = SavedRun::open(&self.path, self.spec.catalogue())?;
-        let params = saved.params()?;
-        let deployed = Deployed::new(saved.assembly(), &params)?;
+        let deployed = Deployed::open(&self.path, self.spec.catalogue())?;
         Ok(self.deployed.get_or_init(|| deployed))
     }
 

@@ -4,6 +4,7 @@ mod begin;
 mod changes;
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod deploy;
 pub(crate) mod design;
 pub(crate) mod eval;
 pub(crate) mod export;

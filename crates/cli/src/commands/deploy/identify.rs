@@ -1,0 +1,56 @@
+//! `hwasp deploy identify`.
+
+use std::num::NonZeroUsize;
+
+use hwasp_deploy::identify::{experiment, identify};
+use hwasp_deploy::log::{Logged, read};
+use hwasp_experiment::Catalogue;
+
+use super::super::{executor, write_out};
+use super::replay::of_log;
+use crate::args::DeployIdentifyArgs;
+use crate::failure::Failure;
+use crate::output;
+use crate::progress::Counter;
+
+/// Generations of the search, at most.
+const GENERATIONS: u32 = 60;
+
+pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let logs: Vec<Logged> =
+        args.logs.iter().map(|path| read(path)).collect::<Result<_, _>>().map_err(Failure::input)?;
+    let deployed = of_log(&logs[0], args.run.as_deref(), catalogue)?;
+    let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let executor = executor(threads)?;
+    let mut counter = Counter::new("generations");
+    let found = identify(&logs, &deployed, GENERATIONS, &*executor, &mut |done, _| {
+        counter.tell(u64::from(done), u64::from(GENERATIONS));
+    });
+    counter.finish();
+    let found = found.map_err(Failure::input)?;
+    // What the logs were calibrated with, as a multiple of the data sheet's.
+    let sheet = hwasp_deploy::controller::hand(deployed.spec()).map_err(Failure::input)?.transmission.torque_constant;
+    let calibrated = logs[0].about.torque_per_current / sheet;
+    let (text, homeless) = experiment(&deployed, &found, calibrated)?;
+    write_out(&args.out, &text)?;
+    let [wound, current] = found.left;
+    let [wound_before, current_before] = found.before;
+    output::print(&format!(
+        "  torque per current   {:.3} of the data sheet's\n  tendon stiffness     {:.2} N/mm\n  friction             {:.1} N·mm\n  \
+         delay                {:.1} ms\n  slack                {:.2} mm\n\n  left: {:.3} mm (before {:.3}), {:.4} A (before {:.4})\n  {}\n",
+        found.torque_gain,
+        1e-3 * found.tendon_stiffness,
+        1e3 * found.friction,
+        1e3 * found.delay,
+        1e3 * found.slack,
+        1e3 * wound,
+        1e3 * wound_before,
+        current,
+        current_before,
+        args.out.display()
+    ))?;
+    if !homeless.is_empty() {
+        output::remark(&format!("note: the task of this run has no key for {}", homeless.join(", ")));
+    }
+    Ok(())
+}

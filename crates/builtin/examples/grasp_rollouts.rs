@@ -17,8 +17,8 @@ use std::time::Instant;
 use hwasp_core::{
     EnvSpec, Environment, EpisodeKind, Episodes, Executor, Robot, Sampler, Serial, Step, Stream, Threads,
 };
+use hwasp_grasp::{Grasp, GraspTask, Object, settings_of};
 use hwasp_mujoco::engine::{BodyId, Simulation, Wrench};
-use hwasp_mujoco::grasp::{Grasp, GraspTask, Object, settings_of};
 use hwasp_runs::SavedRun;
 use hwasp_tasks::hand::{MjcfOptions, SUBSTEPS, mjcf, names};
 use serde_json::json;

@@ -12,7 +12,7 @@ use hwasp_tasks::reach::ReachProblem;
 
 /// The engine in which one grasps, in builds with the feature `mujoco`.
 #[cfg(feature = "mujoco")]
-const ENGINE: Option<Engine> = Some(hwasp_mujoco::grasp::engine);
+const ENGINE: Option<Engine> = Some(hwasp_grasp::engine);
 #[cfg(not(feature = "mujoco"))]
 const ENGINE: Option<Engine> = None;
 

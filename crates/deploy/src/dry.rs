@@ -7,7 +7,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
 use hwasp_export::Deployed;
-use hwasp_mujoco::grasp::{Grasp, GraspTask, Object, settings_of};
+use hwasp_grasp::{Grasp, GraspTask, Object, settings_of};
 use hwasp_tasks::grasp::GraspTaskSettings;
 use serde_json::{Value, json};
 

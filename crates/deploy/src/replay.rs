@@ -4,7 +4,7 @@ use hwasp_drivers::Pose;
 use hwasp_emulators::hand::{Carry, HandWorld, HandWorldSettings, Planted};
 use hwasp_emulators::{SpoolDrive, World};
 use hwasp_export::Deployed;
-use hwasp_mujoco::grasp::{Object, settings_of};
+use hwasp_grasp::{Object, settings_of};
 use hwasp_tasks::grasp::{GraspTaskSettings, ShapeKind};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 

@@ -6,7 +6,7 @@ use hwasp_core::{Environment, Purpose, stream};
 use hwasp_drivers::Pose;
 use hwasp_emulators::hand::{Carry, HandWorldError, HandWorldSettings, Planted};
 use hwasp_emulators::{HandWorld, SpoolDrive, SpoolState, World};
-use hwasp_mujoco::grasp::{Grasp, GraspSettings, Script, ShapeKind};
+use hwasp_grasp::{Grasp, GraspSettings, Script, ShapeKind};
 use hwasp_tasks::hand::{SEARCHED, TransmissionDescription};
 
 /// Nothing is off, nothing pushes.

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hwasp_export::{ExportError, Kind, Source, export};
-use hwasp_mujoco::grasp::{Grasp, settings_of};
+use hwasp_grasp::{Grasp, settings_of};
 use hwasp_problem::World;
 use hwasp_testing::{catalogue, empty, small};
 use hwasp_training::Assembly;

@@ -1,6 +1,6 @@
 //! What a line orders.
 
-use hwasp_mujoco::grasp::Object;
+use hwasp_grasp::Object;
 
 use super::tell::ObjectText;
 

@@ -3,7 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr};
 
 use hwasp_drivers::Pose;
-use hwasp_mujoco::grasp::GraspSettings;
+use hwasp_grasp::GraspSettings;
 use hwasp_tasks::hand::DESIGN_LEN;
 use serde::Deserialize;
 use thiserror::Error;

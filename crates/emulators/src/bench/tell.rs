@@ -1,7 +1,7 @@
 //! What the bench tells, as JSON.
 
 use hwasp_drivers::Pose;
-use hwasp_mujoco::grasp::{Object, ShapeKind};
+use hwasp_grasp::{Object, ShapeKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 use hwasp_core::{Environment, Purpose, stream};
 use hwasp_drivers::Pose;
+use hwasp_grasp::{CarriedHand, Grasp, GraspError, GraspSettings, Hold, Object};
 use hwasp_mujoco::engine::{EditError, PhysicsFault};
-use hwasp_mujoco::grasp::{CarriedHand, Grasp, GraspError, GraspSettings, Hold, Object};
 use hwasp_tasks::hand::{DESIGN_LEN, TransmissionDescription};
 use thiserror::Error;
 

@@ -1,6 +1,6 @@
 //! The spool between motor and tendons, with friction.
 
-use hwasp_mujoco::grasp::yielding;
+use hwasp_grasp::yielding;
 
 use crate::world::SpoolDrive;
 

@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
+use hwasp_grasp::{Object, Stage, Still};
 use hwasp_mujoco::engine::Painter;
-use hwasp_mujoco::grasp::{Object, Stage, Still};
 use hwasp_tasks::hand::names;
 use hwasp_training::Assembly;
 

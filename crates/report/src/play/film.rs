@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hwasp_core::{RolloutError, Serial};
-use hwasp_mujoco::grasp::{Film, Filmed, Grasp, Object, settings_of};
+use hwasp_grasp::{Film, Filmed, Grasp, Object, settings_of};
 use hwasp_training::{Assembly, World, held_out, sampler};
 
 use super::{PlayError, PlayOptions, check};

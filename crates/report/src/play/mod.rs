@@ -97,7 +97,7 @@ pub enum PlayError {
     /// A grasping task that cannot be.
     #[cfg(feature = "mujoco")]
     #[error(transparent)]
-    Grasp(#[from] hwasp_mujoco::grasp::GraspError),
+    Grasp(#[from] hwasp_grasp::GraspError),
     /// The world of the episodes cannot be put together, or nothing is grasped in it.
     #[error(transparent)]
     Assemble(#[from] AssembleError),

@@ -1,6 +1,6 @@
 //! Which moments of a grasp a sheet shows.
 
-use hwasp_mujoco::grasp::Still;
+use hwasp_grasp::Still;
 
 /// Pictures in a row of a sheet.
 pub const MOMENTS: usize = 6;

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use hwasp_core::{End, Environment, Purpose, Stream, check_env, stream};
-use hwasp_mujoco::engine::Simulation;
-use hwasp_mujoco::grasp::{
+use hwasp_grasp::{
     Grasp, GraspError, GraspPlant, GraspSettings, GraspTask, Inertia, Ramp, Script, ShapeKind, Viewpoint,
 };
+use hwasp_mujoco::engine::Simulation;
 use hwasp_tasks::hand::{
     Drive, FreeClosing, HandDescription, MjcfOptions, PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE, TendonHand,
     TendonHandSettings, mjcf, names, urdf,

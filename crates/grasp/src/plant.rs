@@ -4,11 +4,11 @@ use hwasp_core::{Law, Plant, Stream};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
-use super::object::{Object, vertical};
-use super::places::{Drive, Places};
-use super::sensors::{Drawn, Reading, Sensors};
-use super::settings::GraspSettings;
-use crate::engine::{EditError, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
+use crate::object::{Object, vertical};
+use crate::places::{Drive, Places};
+use crate::sensors::{Drawn, Reading, Sensors};
+use crate::settings::GraspSettings;
+use hwasp_mujoco::engine::{EditError, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
 use hwasp_tasks::grasp::rules::WORKSPACE;
 use hwasp_tasks::hand::{DESIGN_LEN, SUBSTEPS, TransmissionDescription, names};
 

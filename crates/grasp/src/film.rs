@@ -7,8 +7,10 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_core::{End, EnvSpec, Environment, MakeEnvironment, Outcome, Robot, Step, Stream};
 
-use super::{Grasp, GraspTask, Object};
-use crate::engine::{EditError, GeomId, PhysicsFault, Simulation};
+use crate::grasp::Grasp;
+use crate::object::Object;
+use crate::task::GraspTask;
+use hwasp_mujoco::engine::{EditError, GeomId, PhysicsFault, Simulation};
 
 /// One moment of an episode.
 #[derive(Clone, Debug, PartialEq)]

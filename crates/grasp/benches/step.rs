@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hwasp_core::{MakeEnvironment, Purpose, stream};
-use hwasp_mujoco::grasp::{Grasp, GraspSettings};
+use hwasp_grasp::{Grasp, GraspSettings};
 
 /// The palm goes down and the motor winds, so that the fingers come to touch the object; an episode that has ended begins
 /// again.

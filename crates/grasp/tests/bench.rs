@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use hwasp_core::{Environment, Purpose, Robot, Stream, stream};
-use hwasp_mujoco::grasp::{Bench, Grasp, GraspSettings, GraspTask, Script, ShapeKind, Viewpoint};
+use hwasp_grasp::{Bench, Grasp, GraspSettings, GraspTask, Script, ShapeKind, Viewpoint};
 use hwasp_tasks::grasp::{ObjectSensed, TravelSensed};
 use hwasp_tasks::hand::{PalmMotion, SEARCHED, TendonHand, TendonHandSettings, names};
 use rand::RngExt;

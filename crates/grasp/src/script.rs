@@ -2,8 +2,9 @@
 
 use hwasp_core::{End, Environment, Robot, Stream};
 
-use super::plant::GraspPlant;
-use super::{Grasp, GraspTask};
+use crate::grasp::Grasp;
+use crate::plant::GraspPlant;
+use crate::task::GraspTask;
 
 /// How deep the palm goes and when it lifts. Defaults found by experiment.
 #[derive(Clone, Debug)]

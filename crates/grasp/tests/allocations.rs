@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use hwasp_core::{MakeEnvironment, Purpose, stream};
-use hwasp_mujoco::grasp::{Grasp, GraspSettings};
+use hwasp_grasp::{Grasp, GraspSettings};
 
 #[test]
 fn grasp_steps_do_not_allocate() {

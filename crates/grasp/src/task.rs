@@ -5,11 +5,11 @@ use std::sync::Arc;
 use hwasp_core::{EnvSpec, Outcome, Sight, Stream, Task};
 use rand::RngExt;
 
-use super::hold::{Hold, distance};
-use super::object::Object;
-use super::plant::GraspPlant;
-use super::settings::{GraspSettings, ShapeKind, Viewpoint};
-use crate::engine::View;
+use crate::hold::{Hold, distance};
+use crate::object::Object;
+use crate::plant::GraspPlant;
+use crate::settings::{GraspSettings, ShapeKind, Viewpoint};
+use hwasp_mujoco::engine::View;
 use hwasp_tasks::grasp::env_spec;
 use hwasp_tasks::grasp::rules::HOLD_HEIGHT;
 

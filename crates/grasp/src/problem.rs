@@ -6,7 +6,8 @@ use hwasp_core::MakeEnvironment;
 use hwasp_problem::AnyError;
 use hwasp_tasks::grasp::{GraspTaskSettings, Scene};
 
-use super::{Grasp, GraspReward, GraspSettings, Ramp};
+use crate::grasp::Grasp;
+use crate::settings::{GraspReward, GraspSettings, Ramp};
 
 /// Makes the environments of a scene: for [`GraspProblem`](hwasp_tasks::grasp::GraspProblem).
 ///

@@ -3,8 +3,8 @@
 use hwasp_core::Stream;
 use rand::RngExt;
 
-use super::settings::{GraspSettings, Inertia, ShapeKind};
-use crate::engine::{BodyId, EditError, GeomId, Shape, Simulation};
+use crate::settings::{GraspSettings, Inertia, ShapeKind};
+use hwasp_mujoco::engine::{BodyId, EditError, GeomId, Shape, Simulation};
 
 /// An object and where it lies.
 #[derive(Clone, Debug, PartialEq)]

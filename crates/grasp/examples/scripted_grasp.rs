@@ -9,7 +9,7 @@ use std::error::Error;
 use std::fmt::Write;
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
-use hwasp_mujoco::grasp::{Grasp, GraspSettings, GraspTask, Script, ShapeKind};
+use hwasp_grasp::{Grasp, GraspSettings, GraspTask, Script, ShapeKind};
 use hwasp_tasks::hand::{PAPER_HWASP, PAPER_MINIMAL, SEARCHED, SMALL_CENTRE};
 
 /// Successes and mean return of some episodes.

@@ -3,10 +3,11 @@
 
 use hwasp_tasks::hand::{DESIGN_LEN, Drive, HandDescription, MjcfOptions, mjcf, names};
 
-use super::object::vertical;
-use super::places::{Drive as Moved, Places};
-use super::{GraspError, Object};
-use crate::engine::{EditError, PhysicsFault, Simulation, TendonId};
+use crate::error::GraspError;
+use crate::object::Object;
+use crate::object::vertical;
+use crate::places::{Drive as Moved, Places};
+use hwasp_mujoco::engine::{EditError, PhysicsFault, Simulation, TendonId};
 
 /// A hand with its own tendons, an object and a floor.
 #[derive(Clone, Debug)]

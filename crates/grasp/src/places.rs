@@ -2,7 +2,7 @@
 
 use hwasp_tasks::hand::names;
 
-use crate::engine::{BodyId, GeomId, Simulation, TendonId, UnknownName};
+use hwasp_mujoco::engine::{BodyId, GeomId, Simulation, TendonId, UnknownName};
 
 /// What moves the joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub(super) struct Places {
 impl Places {
     pub(super) fn look_up(sim: &Simulation, drive: &Drive) -> Result<Self, UnknownName> {
         let joint = |name: &str| sim.joint(name).map(|address| address.qpos.start);
-        let actuator = |name: &str| sim.actuator(name).map(crate::engine::ActuatorId::index);
+        let actuator = |name: &str| sim.actuator(name).map(hwasp_mujoco::engine::ActuatorId::index);
         let drive_names = match drive {
             Drive::Torques => &names::TORQUE_ACTUATORS[..],
             Drive::Tendons(_) => &names::TENDON_ACTUATORS[..],

@@ -2,7 +2,7 @@
 
 use hwasp_core::{Initial, share_done};
 
-use super::GraspError;
+use crate::error::GraspError;
 use hwasp_tasks::grasp::rules::{HORIZON, PALM_STEP};
 pub use hwasp_tasks::grasp::{Bench, Inertia, ShapeKind, Viewpoint};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription, HandRange, KINDS_LEN, PalmMotion};

@@ -63,6 +63,8 @@ struct Control {
     horizon_steps: usize,
     /// What a command is between two periods.
     between: &'static str,
+    /// What the controller keeps from one period to the next.
+    memory: &'static str,
     /// What to do where something is wrong.
     faults: Vec<Described>,
 }
@@ -181,6 +183,7 @@ impl Contract {
                 rate_hz: 1.0 / env.time_step,
                 horizon_steps: env.horizon,
                 between: "the last command is held",
+                memory: "none: a command follows from one observation alone",
                 faults: FAULTS.map(|(name, meaning)| Described { name: name.into(), meaning: meaning.into() }).into(),
             },
             network: Network {

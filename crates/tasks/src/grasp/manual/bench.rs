@@ -18,12 +18,12 @@ pub(super) fn topic(bench: &Bench) -> Topic {
         topic = topic.with("grasp_felt", bench.grasp_felt, "N·m", about);
     }
     if let Some(speed) = bench.palm_speed {
-        let about = "the most in any direction: where a period's commands to the palm are together longer than this times the \
-                     period, all of them are shortened by one factor before they are added up";
+        let about = "the most in any direction: where a period's commands to the palm are together longer than \
+                     this times the period, all of them are shortened by one factor before they are added up";
         topic = topic.with("palm_speed", speed, "m/s", about);
     }
-    let delay = "from the sensors to the command, in whole periods: palm, object, `motor_travel` and `motor_torque` are those of so \
-                 long ago, or of the start";
+    let delay = "from the sensors to the command, in whole periods: palm, object, `motor_travel` and \
+                 `motor_torque` are those of so long ago, or of the start";
     let lag = "time constant with which the arm follows the palm's target, before the position control";
     topic
         .with("delay", bench.delay, "s", delay)
@@ -33,9 +33,10 @@ pub(super) fn topic(bench: &Bench) -> Topic {
         .with("limit_gain", bench.limit_gain, "", "the real tension limit as a multiple of `tension_limit`")
 }
 
-const TRAVEL: &str = "what `motor_travel` tells. `commanded`: the sum of the commands, also while the motor's limit keeps the spool \
-                      from winding; not what an encoder reads. `encoder`: the tendon that is on the spool";
+const TRAVEL: &str = "what `motor_travel` tells. `commanded`: the sum of the commands, also while the motor's \
+                      limit keeps the spool from winding; not what an encoder reads. `encoder`: the tendon that \
+                      is on the spool";
 
-const OBJECT: &str = "what `object_x`, `object_y` and `object_z` tell. `tracked`: where the object is. `fixed`: what was read at the \
-                      start. `carried`: what was read at the start, until `motor_torque` reads `grasp_felt`; from then on it moves \
-                      with what the palm's sensors read";
+const OBJECT: &str = "what `object_x`, `object_y` and `object_z` tell. `tracked`: where the object is. `fixed`: \
+                      what was read at the start. `carried`: what was read at the start, until `motor_torque` \
+                      reads `grasp_felt`; from then on it moves with what the palm's sensors read";

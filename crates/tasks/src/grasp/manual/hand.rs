@@ -13,24 +13,24 @@ pub(super) fn frames(hand: &HandDescription) -> Vec<Frame> {
     vec![
         frame(
             WORLD,
-            "fixed. z points up and is 0 on the floor, the plane on which the object lies; x = y = 0 is below the palm at the \
-             start"
+            "fixed. z points up and is 0 on the floor, the plane on which the object lies; x = y = 0 is below the \
+             palm at the start"
                 .to_owned(),
         ),
         frame(
             PALM,
             format!(
-                "moves with the palm and never turns: its axes are parallel to the world's. The origin lies in the plane of the \
-                 proximal joints' axes. The proximal joints are at {thumb} (thumb), {first} (finger1) and {second} (finger2); \
-                 all joints turn about axes parallel to x. The digits reach towards -z. The palm's body is between z = 0 and \
-                 z = {:.0} mm: an arm holds it from above",
+                "moves with the palm and never turns: its axes are parallel to the world's. The origin lies in \
+                 the plane of the proximal joints' axes. The proximal joints are at {thumb} (thumb), {first} \
+                 (finger1) and {second} (finger2); all joints turn about axes parallel to x. The digits reach \
+                 towards -z. The palm's body is between z = 0 and z = {:.0} mm: an arm holds it from above",
                 2e3 * hand.palm.half_size[2]
             ),
         ),
         frame(
             OBJECT,
-            "moves with the object. The origin is the centre of its bounding box, which is its centre of mass; the axes are \
-             the world's as the object lies at the start, before it is turned about the vertical"
+            "moves with the object. The origin is the centre of its bounding box, which is its centre of mass; \
+             the axes are the world's as the object lies at the start, before it is turned about the vertical"
                 .to_owned(),
         ),
     ]
@@ -53,18 +53,40 @@ pub(super) fn period(hand: &HandDescription) -> Topic {
 /// Motor, spool and tendons.
 pub(super) fn transmission(motor: &TransmissionDescription) -> Topic {
     let torque = motor.spool_radius * motor.tension_limit;
-    Topic::new("transmission", "motor, spool and three tendons; `motor_torque` = spool_radius × sum of the three tensions")
-        .with("spool_radius", motor.spool_radius, "m", "of the spool, to the middle of the line")
-        .with("travel", motor.travel, "m", "the most tendon on the spool")
-        .with("tension_limit", motor.tension_limit, "N", "the most that the tendons pull together: in every simulation step \
-            in which they would pull more at `motor_travel_target`, the spool gives way to the travel at which they pull this")
-        .with("torque_limit", torque, "N·m", "the same at the spool: the motor's current limit times its torque constant. \
-            `motor_torque` is never more, and never negative")
-        .with("current_limit", motor.current(motor.tension_limit), "A", "the same as current of this motor")
-        .with("torque_constant", motor.torque_constant, "N·m/A", "torque of the motor per current (Dynamixel \
-            XM430-W210-T at stall): `motor_torque` on a bench = current × this, less what friction takes")
-        .with("tendon_stiffness", motor.tendon_stiffness, "N/m", "of each tendon: tension = this × (travel - length over the \
-            pulleys), and 0 where it is slack")
+    Topic::new(
+        "transmission",
+        "motor, spool and three tendons; `motor_torque` = spool_radius × sum of the three tensions",
+    )
+    .with("spool_radius", motor.spool_radius, "m", "of the spool, to the middle of the line")
+    .with("travel", motor.travel, "m", "the most tendon on the spool")
+    .with(
+        "tension_limit",
+        motor.tension_limit,
+        "N",
+        "the most that the tendons pull together: in every simulation step in which they would pull more at \
+         `motor_travel_target`, the spool gives way to the travel at which they pull this",
+    )
+    .with(
+        "torque_limit",
+        torque,
+        "N·m",
+        "the same at the spool: the motor's current limit times its torque constant. `motor_torque` is never \
+         more, and never negative",
+    )
+    .with("current_limit", motor.current(motor.tension_limit), "A", "the same as current of this motor")
+    .with(
+        "torque_constant",
+        motor.torque_constant,
+        "N·m/A",
+        "torque of the motor per current (Dynamixel XM430-W210-T at stall): `motor_torque` on a bench = current × \
+         this, less what friction takes",
+    )
+    .with(
+        "tendon_stiffness",
+        motor.tendon_stiffness,
+        "N/m",
+        "of each tendon: tension = this × (travel - length over the pulleys), and 0 where it is slack",
+    )
 }
 
 /// What holds the palm.

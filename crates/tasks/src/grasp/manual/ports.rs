@@ -81,12 +81,13 @@ pub(super) fn motors(task: &GraspTaskSettings, hand: &HandDescription) -> Vec<Mo
         port: "motor".to_owned(),
         frame: None,
         hold: Some(0.0),
-        becomes: "added to the length of tendon to be on the spool; positive winds and closes, negative pays out".to_owned(),
+        becomes: "added to the length of tendon to be on the spool; positive winds and closes, negative pays out"
+            .to_owned(),
         target: Some(Target {
             name: "motor_travel_target".to_owned(),
-            meaning: "tendon to be on the spool, from the open hand with its tendons just taut; angle of the spool times its \
-                      radius. The spool gives way where the tendons would pull more than they may (transmission: \
-                      `tension_limit`), and the sum stays as it is"
+            meaning: "tendon to be on the spool, from the open hand with its tendons just taut; angle of the \
+                      spool times its radius. The spool gives way where the tendons would pull more than they may \
+                      (transmission: `tension_limit`), and the sum stays as it is"
                 .to_owned(),
             start: Some(0.0),
             limits: [0.0, hand.transmission.travel],

@@ -124,8 +124,8 @@ fn grooves_stay_within_the_limits() {
     let mut design = SMALL_CENTRE;
     (design[0], design[1]) = (0.012, 0.002);
     let found = chosen(&design, &catalogue, &workshop).unwrap();
-    assert!((found[0].built.radius - 0.01195).abs() < 1e-9 && (found[1].built.radius - 0.0021).abs() < 1e-9);
-    // A groove of 1.85 mm would leave 0.55 mm around the hole for an axle of 2.5 mm.
+    assert!((found[0].built.radius - 0.01195).abs() < 1e-9 && (found[1].built.radius - 0.0023).abs() < 1e-9);
+    // A groove of 2.05 mm would leave 0.75 mm around the hole for an axle of 2.5 mm.
     assert!((found[1].pulley.groove_radius - workshop.least_groove()).abs() < 1e-9);
     assert!((found[0].pulley.groove_radius - 0.01175).abs() < 1e-9);
     let coarse = Workshop { radius_step: 0.001, ..workshop };
@@ -247,6 +247,8 @@ fn the_table_of_the_workshop_is_its_description() {
         .map(|(field, (key, default))| {
             let (unit, to_si, dimension) = match field.kind {
                 Kind::Quantity(Dimension::Length, _) => (" mm", 1e-3, Dimension::Length),
+                Kind::Quantity(Dimension::Density, _) => (" kg/m^3", 1.0, Dimension::Density),
+                Kind::Quantity(Dimension::Torque, _) => (" N·mm", 1e-3, Dimension::Torque),
                 Kind::Quantity(dimension, _) => (" deg", 1f64.to_radians(), dimension),
                 _ => ("", 1.0, Dimension::None),
             };

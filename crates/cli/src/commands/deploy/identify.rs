@@ -24,7 +24,7 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
     let executor = executor(threads)?;
     let mut counter = Counter::new("generations");
     let found = identify(&logs, &deployed, GENERATIONS, &*executor, &mut |done, _| {
-        counter.tell(u64::from(done), u64::from(GENERATIONS));
+        counter.tell(done as usize, GENERATIONS as usize);
     });
     counter.finish();
     let found = found.map_err(Failure::input)?;

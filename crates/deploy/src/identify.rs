@@ -8,7 +8,7 @@ use hwasp_export::Deployed;
 use crate::controller::hand;
 use crate::error::DeployError;
 use crate::log::{Logged, Row};
-use crate::replay::{Pair, Simulation, acting, of_this_hand};
+use crate::replay::{Pair, Simulation, acting, of_phase, of_this_hand};
 
 /// What a hand differs by, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,11 +77,16 @@ pub fn identify(
     for logged in logs {
         of_this_hand(logged, deployed)?;
         for (&episode, &object) in &logged.episodes {
+            let per_ampere = logged.about.torque_per_current;
+            // Closing and opening in the air: there the springs are all that pulls, and friction is with the one and against the other.
+            let rows = of_phase(logged, episode, "measure");
+            if !rows.is_empty() {
+                stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
+            }
             let rows = acting(logged, episode);
             let Some(winds) = rows.iter().position(|row| row.goal > WINDS) else { continue };
             let from = winds.saturating_sub(BEFORE);
             let rows = &rows[from..rows.len().min(from + STEPS)];
-            let per_ampere = logged.about.torque_per_current;
             stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
         }
     }

@@ -143,7 +143,12 @@ pub struct Compared {
 
 /// The rows of an episode in which the controller acts.
 pub fn acting(logged: &Logged, episode: u32) -> &[Row] {
-    let acts = |row: &Row| row.episode == episode && row.phase == "grasp";
+    of_phase(logged, episode, "grasp")
+}
+
+/// The rows of an episode in which this is done.
+pub(crate) fn of_phase<'l>(logged: &'l Logged, episode: u32, phase: &str) -> &'l [Row] {
+    let acts = |row: &Row| row.episode == episode && row.phase == phase;
     let from = logged.rows.iter().position(acts).unwrap_or(0);
     let count = logged.rows[from..].iter().take_while(|row| acts(row)).count();
     &logged.rows[from..from + count]

@@ -162,6 +162,10 @@ pub(crate) struct DeployRunArgs {
     /// (m) or delay (s); may be repeated
     #[arg(long = "plant", value_name = "NAME=NUMBER", requires = "dry_run")]
     pub(crate) plant: Vec<String>,
+    /// Order a fault of the emulated arm or motor, 3 s after the first object is there: `motor heat 80`, `arm protective-stop`;
+    /// docs/deploy_arm.md and docs/deploy_motor.md have them all
+    #[arg(long, value_name = "FAULT", requires = "dry_run")]
+    pub(crate) fault: Option<String>,
     /// Move nothing: what the controller says is only logged
     #[arg(long)]
     pub(crate) shadow: bool,

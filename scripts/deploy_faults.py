@@ -17,7 +17,7 @@ import tempfile
 import time
 
 # Fault, what is found, what is done. None where the run has to go on.
-STOP, FREE, DOWN = "stop the arm, hold", "stop the arm, free the motor", "set down"
+STOP, FREE, DOWN, ANY = "stop the arm, hold", "stop the arm, free the motor", "set down", None
 FAULTS = [
     ("arm protective-stop", "protective stop of the arm", STOP),
     ("arm emergency-stop", "emergency stop of the arm", STOP),
@@ -36,9 +36,9 @@ FAULTS = [
     ("motor delay 80", "the motor's answer is too old", STOP),
     ("motor over-current 1.4", "the motor takes too much current", FREE),
     ("motor heat 75", "the motor is too hot", DOWN),
-    ("motor voltage 7", "voltage", STOP),
+    ("motor voltage 7", "hardware error", FREE),
     ("motor overload", "hardware error|the motor is free", FREE),
-    ("motor restart", "too old|the motor is free|hardware|beyond", None),
+    ("motor restart", "too old|the motor is free|hardware|beyond", ANY),
     ("motor stuck present-position", "stands still|beyond", STOP),
     ("SIGINT", "Ctrl-C", DOWN),
     ("SIGINT twice", "Ctrl-C, twice|Ctrl-C", FREE),
@@ -50,7 +50,9 @@ def run(hwasp, folder, fault, log):
     signals = fault.startswith("SIGINT")
     process = subprocess.Popen(command + ([] if signals else ["--fault", fault]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if signals:
-        time.sleep(9)
+        # The loop goes once its log has steps; then it is some time into the grasp.
+        while not any(len(path.read_text().splitlines()) > 400 for path in pathlib.Path(log).glob("*.csv")):
+            time.sleep(0.1)
         process.send_signal(signal.SIGINT)
         if "twice" in fault:
             time.sleep(0.2)

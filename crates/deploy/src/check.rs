@@ -168,7 +168,7 @@ fn motor(rig: &Rig, looks: &mut Vec<Look>) {
     let ready = matches!(&as_it_has_to_be, Ok(differences) if differences.is_empty());
     match as_it_has_to_be {
         Ok(differences) if differences.is_empty() => {
-            looks.push(look("motor settings", Mark::Good, "as they have to be"))
+            looks.push(look("motor settings", Mark::Good, "as they have to be"));
         }
         Ok(differences) => {
             let told: Vec<_> =

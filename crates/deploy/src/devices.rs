@@ -91,7 +91,7 @@ fn first_state(arm: &mut UrArm) -> Result<ArmState, DriverError> {
     loop {
         match arm.state() {
             Err(DriverError::Timeout { .. }) if begin.elapsed() < PATIENCE => {
-                std::thread::sleep(Duration::from_millis(2))
+                std::thread::sleep(Duration::from_millis(2));
             }
             answer => return answer,
         }

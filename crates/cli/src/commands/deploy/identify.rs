@@ -49,6 +49,12 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
         current_before,
         args.out.display()
     ))?;
+    if !found.gain_is_told {
+        output::remark(
+            "note: these logs do not tell torque per current from stiffness and friction, for the springs of this hand hardly pull: the \
+             calibrated torque is taken for right; measure it with `hwasp deploy calibrate --weight`",
+        );
+    }
     if !homeless.is_empty() {
         output::remark(&format!("note: the task of this run has no key for {}", homeless.join(", ")));
     }

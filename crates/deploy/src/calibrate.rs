@@ -1,6 +1,7 @@
 //! What has to be measured on a hand before it is driven: where its tendons begin to pull, how much friction there is, and how much
 //! torque its motor gives per current.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use hwasp_runs::files::{Disk, read_limited, replace};
@@ -91,7 +92,10 @@ impl Calibration {
 }
 
 fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 /// SHA-256 of what `rig.toml` says of the motor.

@@ -51,15 +51,17 @@ fn look(what: &'static str, mark: Mark, found: impl Into<String>) -> Look {
 /// Whether the arm comes to all of the workspace, by its reach alone.
 pub fn reach(rig: &Rig) -> Vec<Look> {
     let (frame, [x, y, z]) = (rig.frame(), rig.limits.workspace);
-    let (mut farthest, mut nearest) = (0.0_f64, f64::INFINITY);
+    let mut farthest = 0.0_f64;
     for corner in 0..8 {
         let place = [x[corner & 1], y[corner >> 1 & 1], z[corner >> 2]];
         let [px, py, pz] = frame.pose(place).position;
         // The flange is above the palm by the hand's length.
         let flange = pz + rig.arm.tcp_position[2];
         farthest = farthest.max((px * px + py * py + flange * flange).sqrt());
-        nearest = nearest.min(px.hypot(py));
     }
+    // The place of the workspace that is nearest to the arm's axis, which need be no corner.
+    let [ax, ay, _] = frame.place(&hwasp_drivers::Pose::default());
+    let nearest = (ax - ax.clamp(x[0], x[1])).hypot(ay - ay.clamp(y[0], y[1]));
     let bad = farthest > REACH || nearest < NEAREST;
     let told = format!(
         "corners of the workspace are up to {farthest:.2} m from the base and down to {nearest:.2} m from its axis"
@@ -166,7 +168,7 @@ fn motor(rig: &Rig, looks: &mut Vec<Look>) {
     let ready = matches!(&as_it_has_to_be, Ok(differences) if differences.is_empty());
     match as_it_has_to_be {
         Ok(differences) if differences.is_empty() => {
-            looks.push(look("motor settings", Mark::Good, "as they have to be"))
+            looks.push(look("motor settings", Mark::Good, "as they have to be"));
         }
         Ok(differences) => {
             let told: Vec<_> =
@@ -219,7 +221,9 @@ mod tests {
         assert_eq!(reach(&rig)[0].mark, Mark::Good, "{:?}", reach(&rig));
         rig.world.position = [0.8, 0.0, 0.0];
         assert_eq!(reach(&rig)[0].mark, Mark::Bad);
-        rig.world.position = [0.2, 0.0, 0.0];
-        assert_eq!(reach(&rig)[0].mark, Mark::Bad);
+        for beside in [0.05, 0.2, -0.25] {
+            rig.world.position = [beside, 0.0, 0.0];
+            assert_eq!(reach(&rig)[0].mark, Mark::Bad, "{beside} m");
+        }
     }
 }

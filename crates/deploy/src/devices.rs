@@ -56,6 +56,8 @@ pub fn motor_settings(rig: &Rig) -> DynamixelSettings {
         baud: rig.motor.baud as u32,
         current_limit: rig.motor.current_limit,
         watchdog: Duration::from_secs_f64(rig.motor.watchdog),
+        // Two answers that are lost, one after the other, are borne.
+        reply: Duration::from_secs_f64(0.2 * rig.limits.motor_stale),
         ..DynamixelSettings::default()
     }
 }
@@ -89,7 +91,7 @@ fn first_state(arm: &mut UrArm) -> Result<ArmState, DriverError> {
     loop {
         match arm.state() {
             Err(DriverError::Timeout { .. }) if begin.elapsed() < PATIENCE => {
-                std::thread::sleep(Duration::from_millis(2))
+                std::thread::sleep(Duration::from_millis(2));
             }
             answer => return answer,
         }

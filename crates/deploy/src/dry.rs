@@ -4,6 +4,8 @@
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use hwasp_core::{Environment, Purpose, Robot, stream};
 use hwasp_export::Deployed;
@@ -119,7 +121,7 @@ impl Drop for BenchProcess {
             if matches!(self.child.try_wait(), Ok(Some(_)) | Err(_)) {
                 return;
             }
-            std::thread::sleep(std::time::Duration::from_millis(10));
+            std::thread::sleep(Duration::from_millis(10));
         }
         let _ = self.child.kill();
         let _ = self.child.wait();
@@ -177,19 +179,26 @@ impl HeldOut {
 
 /// Puts held-out objects onto the emulated bench, and looks at them.
 pub struct DryStage {
-    bench: BenchProcess,
+    bench: Arc<Mutex<BenchProcess>>,
     held_out: HeldOut,
+    /// Ordered once, so long after the first object was placed.
+    fault: Option<(Duration, String)>,
 }
 
 impl DryStage {
     /// On this bench.
     pub fn new(bench: BenchProcess, held_out: HeldOut) -> Self {
-        Self { bench, held_out }
+        Self { bench: Arc::new(Mutex::new(bench)), held_out, fault: None }
     }
 
-    /// The bench, to order faults.
-    pub fn bench(&mut self) -> &mut BenchProcess {
-        &mut self.bench
+    /// Orders a fault of arm or motor, such as `motor heat 80`, so long after the first object is there.
+    #[must_use]
+    pub fn with_fault(self, after: Duration, fault: &str) -> Self {
+        Self { fault: Some((after, format!("fault {fault}"))), ..self }
+    }
+
+    fn order(&self, order: &str) -> Result<Value, DeployError> {
+        self.bench.lock().unwrap_or_else(PoisonError::into_inner).order(order)
     }
 }
 
@@ -203,12 +212,22 @@ impl Stage for DryStage {
             "kind": object.kind.name(), "size": object.size, "mass": object.mass, "inertia": object.inertia,
             "friction": object.friction, "place": object.place, "yaw": object.yaw, "lying": object.lying,
         });
-        self.bench.order(&format!("object {order}"))?;
+        self.order(&format!("object {order}"))?;
+        if let Some((after, fault)) = self.fault.take() {
+            let bench = Arc::clone(&self.bench);
+            std::thread::spawn(move || {
+                std::thread::sleep(after);
+                // What the bench says against it shows in a run that goes on as if nothing were.
+                if let Err(error) = bench.lock().unwrap_or_else(PoisonError::into_inner).order(&fault) {
+                    tracing::error!("{error}");
+                }
+            });
+        }
         Ok(Placed { size, place: [x, y, 0.5 * size[2]], shape, start: Some(palm) })
     }
 
     fn held(&mut self, _: u32) -> Result<Option<bool>, DeployError> {
-        let state = self.bench.order("state")?;
+        let state = self.order("state")?;
         if let Some(fault) = state["hand"]["fault"].as_str() {
             return Err(wrong(format!("its physics broke down: {fault}")));
         }

@@ -8,7 +8,7 @@ use hwasp_export::Deployed;
 use crate::controller::hand;
 use crate::error::DeployError;
 use crate::log::{Logged, Row};
-use crate::replay::{Pair, Simulation, acting, of_this_hand};
+use crate::replay::{Pair, Simulation, acting, of_phase, of_this_hand};
 
 /// What a hand differs by, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,9 @@ pub struct Identified {
     pub left: [f64; 2],
     /// The same before the fit.
     pub before: [f64; 2],
+    /// Whether the logs tell torque per current from stiffness and friction. Where springs hardly pull they do not: a hand that is
+    /// stiffer by a factor, with more friction and a stronger motor, draws the same current.
+    pub gain_is_told: bool,
 }
 
 /// What counts as one unit of difference: wound, m, and current, A. About what noise and a simulation's error are.
@@ -42,6 +45,13 @@ const SCALES: [f64; 3] = [0.05, 0.05, 2e-3];
 const LOWER: [f64; FITTED] = [-1.0, -1.6, 0.0, 0.0, 0.0];
 const UPPER: [f64; FITTED] = [1.0, 1.6, 6.0, 3.0, 5.0];
 const BEGIN: [f64; FITTED] = [0.0, 0.0, 0.3, 0.3, 0.1];
+
+/// How much what was calibrated counts, and how far the logarithm of a gain is from it.
+const PRIOR: f64 = 0.02;
+const WIDTH: f64 = 0.1;
+/// A hand that is so much stronger in everything has to leave so much more of a difference, if logs tell the gain.
+const STRONGER: f64 = 1.2;
+const AGAINST: f64 = 1.2;
 
 fn planted(x: &[f64], stiffness: f64) -> Planted {
     Planted {
@@ -77,11 +87,16 @@ pub fn identify(
     for logged in logs {
         of_this_hand(logged, deployed)?;
         for (&episode, &object) in &logged.episodes {
+            let per_ampere = logged.about.torque_per_current;
+            // Closing and opening in the air: there the springs are all that pulls, and friction is with the one and against the other.
+            let rows = of_phase(logged, episode, "measure");
+            if !rows.is_empty() {
+                stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
+            }
             let rows = acting(logged, episode);
             let Some(winds) = rows.iter().position(|row| row.goal > WINDS) else { continue };
             let from = winds.saturating_sub(BEFORE);
             let rows = &rows[from..rows.len().min(from + STEPS)];
-            let per_ampere = logged.about.torque_per_current;
             stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
         }
     }
@@ -110,11 +125,18 @@ pub fn identify(
         upper: Some(UPPER.to_vec()),
         ..CmaesConfig::default()
     };
-    let mut search = Cmaes::new(config, &BEGIN, 0).map_err(wrong)?;
+    // Where the logs say nothing of the gain, it is what was calibrated.
+    let sheet = hand(deployed.spec())?.transmission.torque_constant;
+    let calibrated = (logs.first().map_or(sheet, |logged| logged.about.torque_per_current) / sheet).ln();
+    let begin: [f64; FITTED] =
+        std::array::from_fn(|i| if i < 2 { calibrated.clamp(LOWER[i], UPPER[i]) } else { BEGIN[i] });
+    let prior = |x: &[f64]| PRIOR * ((x[0] - calibrated) / WIDTH).powi(2);
+    let mut search = Cmaes::new(config, &begin, 0).map_err(wrong)?;
     for generation in 0..generations {
         let candidates = search.ask();
         let scores = executor.map(candidates.len(), |i| {
-            left(planted(&candidates[i], nominal)).map_or(f64::NEG_INFINITY, |left| -units(left))
+            let (x, left) = (&candidates[i], left(planted(&candidates[i], nominal)));
+            left.map_or(f64::NEG_INFINITY, |left| -units(left) - prior(x))
         });
         search.tell(&scores).map_err(wrong)?;
         told(generation + 1, search.best().map_or(f64::NAN, |(_, score)| (-score).sqrt()));
@@ -129,7 +151,12 @@ pub fn identify(
         hint: "see by `hwasp deploy replay` which log it does not follow",
     };
     let (before, after) = (left(Planted::default()).ok_or_else(lost)?, left(found).ok_or_else(lost)?);
+    // A hand that is stronger in everything: do the logs speak against it?
+    let mut stronger = best.clone();
+    (stronger[0], stronger[1], stronger[2]) = (best[0] + STRONGER.ln(), best[1] + STRONGER.ln(), STRONGER * best[2]);
+    let against = left(planted(&stronger, nominal)).map_or(f64::INFINITY, units);
     Ok(Identified {
+        gain_is_told: against > AGAINST * units(after),
         torque_gain: found.torque_gain,
         tendon_stiffness: found.tendon_stiffness.unwrap_or(nominal),
         friction: found.friction,

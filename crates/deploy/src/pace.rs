@@ -130,7 +130,7 @@ mod tests {
         }
         jitter.note(Duration::from_secs(1));
         assert_eq!(jitter.quantile(0.5), Duration::from_micros(510));
-        assert_eq!(jitter.quantile(0.99), Duration::from_micros(1000));
+        assert_eq!(jitter.quantile(0.99), Duration::from_millis(1));
         assert_eq!((jitter.worst(), jitter.count()), (Duration::from_secs(1), 1001));
     }
 }

@@ -1,5 +1,7 @@
 //! A log held against the simulation: the same goals to the same hand, step by step.
 
+use std::fmt::Write;
+
 use hwasp_drivers::Pose;
 use hwasp_emulators::hand::{Carry, HandWorld, HandWorldSettings, Planted};
 use hwasp_emulators::{SpoolDrive, World};
@@ -143,7 +145,12 @@ pub struct Compared {
 
 /// The rows of an episode in which the controller acts.
 pub fn acting(logged: &Logged, episode: u32) -> &[Row] {
-    let acts = |row: &Row| row.episode == episode && row.phase == "grasp";
+    of_phase(logged, episode, "grasp")
+}
+
+/// The rows of an episode in which this is done.
+pub(crate) fn of_phase<'l>(logged: &'l Logged, episode: u32, phase: &str) -> &'l [Row] {
+    let acts = |row: &Row| row.episode == episode && row.phase == phase;
     let from = logged.rows.iter().position(acts).unwrap_or(0);
     let count = logged.rows[from..].iter().take_while(|row| acts(row)).count();
     &logged.rows[from..from + count]
@@ -204,9 +211,12 @@ impl Compared {
     pub fn csv(&self) -> String {
         let mut text = String::new();
         for Pair { time, wound, current } in &self.pairs {
-            text += &format!(
-                "{},{time:.4},{:.6},{:.6},{:.5},{:.5}\n",
-                self.episode, wound[0], wound[1], current[0], current[1]
+            let [logged_wound, wound] = wound;
+            let [logged_current, current] = current;
+            let _ = writeln!(
+                text,
+                "{},{time:.4},{logged_wound:.6},{wound:.6},{logged_current:.5},{current:.5}",
+                self.episode
             );
         }
         text

@@ -6,13 +6,19 @@ use hwasp_core::EnvSpec;
 use hwasp_tasks::grasp::{CarriedObject, ShapeKind};
 
 use crate::controller::{Controller, Training};
-use crate::drive::{Approach, Drive, Finish, Grasp, GraspTold, SetDown};
+use crate::drive::{Approach, Drive, Finish, Grasp, GraspTold, SetDown, Wind};
 use crate::error::DeployError;
 use crate::object::{Object, ObjectKnown, Tracker};
 use crate::safety::Verdict;
 
 /// How high the palm is carried between episodes, m above the table, where the workspace lets it.
 const HOME: f64 = 0.35;
+
+/// How much is wound in the air before each grasp, m: the fingers close by a half and touch nothing.
+const EXERCISE: f64 = 0.008;
+/// How slowly, m a step, and for how many steps it rests then.
+const EXERCISE_STEP: f64 = 8e-5;
+const EXERCISE_REST: u32 = 15;
 
 /// An object on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,6 +149,12 @@ fn one(
         return Ok(Episode { ended: Some(verdict), ..episode });
     }
     drive.begin_episode(index, placed.size, placed.place, placed.shape);
+    // The open hand closes a little and opens again, in the air: what friction and tendons are like shows in each log.
+    for goal in [EXERCISE, 0.0] {
+        if let Finish::Ended(verdict) = drive.run(&mut Wind::to(goal, EXERCISE_STEP, EXERCISE_REST)) {
+            return Ok(Episode { ended: Some(verdict), ..episode });
+        }
+    }
     let object = object(plan, &placed, drive.now())?;
     let told =
         GraspTold { object, size: placed.size, encoder: plan.training.encoder, felt_at: plan.felt, steps: plan.steps };

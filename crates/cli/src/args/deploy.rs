@@ -158,10 +158,14 @@ pub(crate) struct DeployRunArgs {
     /// The first object of a dry run, counted as `hwasp eval` runs them
     #[arg(long, value_name = "INDEX", requires = "dry_run", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=MOST_EPISODES))]
     pub(crate) first: u64,
-    /// Make the emulated hand of a dry run differ from its description: torque_gain, tendon_stiffness (N/m), friction (N·m), slack
-    /// (m) or delay (s); may be repeated
+    /// Make the emulated hand of a dry run differ from its description: `torque_gain`, `tendon_stiffness` (N/m), `friction` (N·m), `slack`
+    /// (m) or `delay` (s); may be repeated
     #[arg(long = "plant", value_name = "NAME=NUMBER", requires = "dry_run")]
     pub(crate) plant: Vec<String>,
+    /// Order a fault of the emulated arm or motor, 3 s after the first object is there: `motor heat 80`, `arm protective-stop`;
+    /// `docs/deploy_arm.md` and `docs/deploy_motor.md` have them all
+    #[arg(long, value_name = "FAULT", requires = "dry_run")]
+    pub(crate) fault: Option<String>,
     /// Move nothing: what the controller says is only logged
     #[arg(long)]
     pub(crate) shadow: bool,

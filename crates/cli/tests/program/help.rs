@@ -18,7 +18,14 @@ fn the_version() {
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
     let commands = "train eval design export parts tolerances play plot report compare reproduce check schema list laws graph init";
-    let lines: Vec<String> = commands.split(' ').map(|command| format!("{command} --help")).collect();
+    let deploy = ["init", "check", "calibrate", "run", "replay", "identify", "trials"]
+        .map(|command| format!("deploy {command} --help"));
+    let lines = commands
+        .split(' ')
+        .map(|command| format!("{command} --help"))
+        .chain(["deploy --help".to_owned()])
+        .chain(deploy);
+    let lines: Vec<String> = lines.collect();
     insta::assert_snapshot!(sandbox.transcript(&lines.iter().map(String::as_str).collect::<Vec<_>>()));
 }
 

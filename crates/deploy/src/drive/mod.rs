@@ -219,7 +219,8 @@ impl<'a> Drive<'a> {
     fn steps_of(&mut self, motion: &mut dyn Motion) -> Finish {
         self.count = 0;
         let now = self.bench.clock.now();
-        (self.steps.restart(now), self.servos.restart(now));
+        self.steps.restart(now);
+        self.servos.restart(now);
         self.path_began = now;
         loop {
             let late = self.wait();
@@ -382,10 +383,9 @@ impl<'a> Drive<'a> {
 
     fn stop_arm(&mut self) {
         self.path = [self.senses.palm; 2];
-        if self.manner.shadow || self.bench.arm.stop().is_ok() {
-            if !self.arm_stopped {
-                self.tell(Event::ArmStopped);
-            }
+        let stopped = self.manner.shadow || self.bench.arm.stop().is_ok();
+        if stopped && !self.arm_stopped {
+            self.tell(Event::ArmStopped);
         }
         self.arm_stopped = true;
     }
@@ -395,7 +395,8 @@ impl<'a> Drive<'a> {
         let until = self.bench.clock.now() + self.manner.hold;
         let interrupts = self.bench.interrupts.load(Ordering::Relaxed);
         let now = self.bench.clock.now();
-        (self.steps.restart(now), self.servos.restart(now));
+        self.steps.restart(now);
+        self.servos.restart(now);
         while self.holding && self.bench.clock.now() < until {
             let late = self.wait();
             self.sense();

@@ -104,15 +104,7 @@ impl McapLog {
 
     pub(super) fn step(&mut self, step: &Step) -> io::Result<()> {
         let (observation, command) = (std::mem::take(&mut self.observation), std::mem::take(&mut self.command));
-        let (seen, commanded) = (&step.seen[..observation.len()], &step.commanded[..command.len()]);
-        let acts = seen.iter().any(|x| x.is_finite());
-        let written = (|| {
-            if acts {
-                self.put(0, step.time, &Named(&observation, seen))?;
-                self.put(1, step.time, &Named(&command, commanded))?;
-            }
-            Ok(())
-        })();
+        let written = self.acted(step, &observation, &command);
         (self.observation, self.command) = (observation, command);
         written?;
         let &Step { palm, palm_target, tool_speed, arm_clock, arm_age, .. } = step;
@@ -123,6 +115,16 @@ impl McapLog {
         self.put(3, step.time, &motor)?;
         let &Step { episode, phase, step: count, late, response, .. } = step;
         self.put(4, step.time, &Loop { episode, phase: phase.name(), step: count, late, response: response.name() })
+    }
+
+    /// What the controller saw and said, where it acted.
+    fn acted(&mut self, step: &Step, observation: &[String], command: &[String]) -> io::Result<()> {
+        let (seen, commanded) = (&step.seen[..observation.len()], &step.commanded[..command.len()]);
+        if !seen.iter().any(|x| x.is_finite()) {
+            return Ok(());
+        }
+        self.put(0, step.time, &Named(observation, seen))?;
+        self.put(1, step.time, &Named(command, commanded))
     }
 
     pub(super) fn event(&mut self, time: f64, episode: u32, event: Event) -> io::Result<()> {

@@ -59,6 +59,7 @@ pub struct About {
 }
 
 /// Something to be kept.
+#[allow(clippy::large_enum_variant, reason = "nearly all are steps, and the queue has its room once and for all")]
 #[derive(Clone, Copy, Debug)]
 enum Entry {
     Step(Step),
@@ -138,6 +139,7 @@ impl LogWriter {
         Err(DeployError::File { action: "written", path: self.path.clone(), source: std::io::Error::other(error) })
     }
 
+    #[allow(clippy::large_types_passed_by_value, reason = "it goes into the queue")]
     fn send(&self, entry: Entry) {
         let Some(queue) = &self.queue else { return };
         if let Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) = queue.try_send(entry) {

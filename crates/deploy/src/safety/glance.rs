@@ -74,6 +74,7 @@ impl Limits {
 }
 
 /// A step, as the rules see it.
+#[allow(clippy::struct_excessive_bools, reason = "each is what one device or one person says")]
 #[derive(Clone, Copy, Debug)]
 pub struct Glance {
     /// When.
@@ -107,7 +108,7 @@ pub struct Glance {
 }
 
 /// What was found in a step.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Found(Option<Cause>);
 
 impl Found {
@@ -118,7 +119,7 @@ impl Found {
         }
     }
 
-    pub(super) fn worst(&self) -> Option<Cause> {
+    pub(super) fn worst(self) -> Option<Cause> {
         self.0
     }
 }

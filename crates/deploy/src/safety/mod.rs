@@ -196,13 +196,13 @@ impl Watch {
         let beyond = self.limits.lead + self.limits.margin;
         found.is(glance.wound < -beyond || glance.wound > self.limits.travel + beyond, Cause::Travel);
         // A spool that should wind, has current to spare and does not: its register is stuck, or its line is caught.
-        let moved = !((glance.wound - self.moved_at).abs() < STILL);
-        if moved {
+        let still = (glance.wound - self.moved_at).abs() < STILL;
+        if !still {
             self.moved_at = glance.wound;
         }
         let idle = motor.current.abs() < WORKING * self.limits.working_current;
         let should = glance.holding && (glance.wound_target - glance.wound).abs() > LAG && idle;
-        found.is(self.still.lasts(should && !moved, glance.now) >= self.limits.stuck, Cause::MotorStuck);
+        found.is(self.still.lasts(should && still, glance.now) >= self.limits.stuck, Cause::MotorStuck);
     }
 
     fn object(&mut self, glance: &Glance, found: &mut Found) {

@@ -248,7 +248,7 @@ impl Arm for FakeArm {
             Fault::ArmCut => return Err(line("arm")),
             Fault::ArmFrozen => state = ArmState { at: state.at, ..kept },
             Fault::ArmLate(ms) => {
-                let then = world.now - Duration::from_millis(ms);
+                let then = world.now.checked_sub(Duration::from_millis(ms)).unwrap_or(world.begin);
                 state = world.history.iter().rev().find(|(at, _)| *at <= then).map_or(kept, |(_, state)| *state);
             }
             Fault::Protective => state.safety = Safety::ProtectiveStop,
@@ -315,14 +315,14 @@ impl Motor for FakeMotor {
             return Ok(state);
         }
         world.answers += 1;
-        let since = (world.age() - world.onset).as_secs_f64();
+        let since = world.age().saturating_sub(world.onset).as_secs_f64();
         match world.fault {
-            Fault::WrongCrc(every) if world.answers % every == 0 => {
+            Fault::WrongCrc(every) if world.answers.is_multiple_of(every) => {
                 let cause = "the checksum is wrong".to_owned();
                 return Err(DriverError::Protocol { device: "motor".to_owned(), what: "read", cause });
             }
             Fault::MotorLate(ms) => {
-                let then = world.now - Duration::from_millis(ms);
+                let then = world.now.checked_sub(Duration::from_millis(ms)).unwrap_or(world.begin);
                 let kept = world.kept_motor.unwrap_or(state);
                 state = world.answered.iter().rev().find(|(at, _)| *at <= then).map_or(kept, |(_, state)| *state);
             }

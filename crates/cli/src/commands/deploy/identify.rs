@@ -24,7 +24,7 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
     let executor = executor(threads)?;
     let mut counter = Counter::new("generations");
     let found = identify(&logs, &deployed, GENERATIONS, &*executor, &mut |done, _| {
-        counter.tell(u64::from(done), u64::from(GENERATIONS));
+        counter.tell(done as usize, GENERATIONS as usize);
     });
     counter.finish();
     let found = found.map_err(Failure::input)?;
@@ -49,6 +49,12 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
         current_before,
         args.out.display()
     ))?;
+    if !found.gain_is_told {
+        output::remark(
+            "note: these logs do not tell torque per current from stiffness and friction, for the springs of this hand hardly pull: the \
+             calibrated torque is taken for right; measure it with `hwasp deploy calibrate --weight`",
+        );
+    }
     if !homeless.is_empty() {
         output::remark(&format!("note: the task of this run has no key for {}", homeless.join(", ")));
     }

@@ -221,6 +221,10 @@ fn ended(episodes: &[Episode]) -> Result<(), Failure> {
     Err(if asked { Failure::interrupted(error) } else { Failure::from(error) })
 }
 
+/// When a fault is ordered: while the hand closes on the first object, or lifts it.
+#[cfg(feature = "mujoco")]
+const FAULT_AFTER: std::time::Duration = std::time::Duration::from_secs(3);
+
 #[cfg(not(feature = "mujoco"))]
 fn dry(_: &DeployRunArgs, _: &Deployed, _: &AtomicU32) -> Result<(), Failure> {
     Err(super::no_engine())
@@ -246,7 +250,11 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
     rig.limits.hold = rig.limits.hold.min(1.0);
     let calibration = Calibration::ideal(&rig, deployed.design());
     let job = Job { args, deployed, rig: &rig, calibration: &calibration, interrupts, what: "dry-run" };
-    let episodes = job.run(&mut DryStage::new(bench, held_out))?;
+    let mut stage = DryStage::new(bench, held_out);
+    if let Some(fault) = &args.fault {
+        stage = stage.with_fault(FAULT_AFTER, fault);
+    }
+    let episodes = job.run(&mut stage)?;
     let task = deployed.spec().task.name();
     let trials: Vec<_> = episodes.iter().filter_map(|episode| trial(episode, task, &args.run)).collect();
     let held = trials.iter().filter(|trial| trial.held).count() as u64;

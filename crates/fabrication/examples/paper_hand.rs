@@ -7,7 +7,7 @@ use hwasp_fabrication::{FittedSpring, SeatedSpring, Workshop, package, parts, sc
 use hwasp_tasks::hand::{HandDescription, PAPER_HWASP};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = PathBuf::from(std::env::args().nth(1).ok_or("name a folder")?);
+    let folder = std::env::args().nth(1).map_or_else(|| std::env::temp_dir().join("paper_hand"), PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     let (hand, workshop) = (HandDescription::default(), Workshop::default());
     let seated = SeatedSpring { wire: 0.4e-3, outer: 6.4e-3, length: 3.0e-3 };

@@ -105,13 +105,9 @@ fn built(training: &MassSpring, deployment: &MassSpring, words: Words) -> Built 
 }
 
 fn words(about: String) -> Words {
-    let seen = [("y2", "the lower mass below the ceiling"), ("v2", "speed of the lower mass, downwards")];
-    let read = [
-        ("y1", "the upper mass below the ceiling"),
-        ("v1", "speed of the upper mass, downwards"),
-        ("y2", "the lower mass below the ceiling"),
-        ("v2", "speed of the lower mass, downwards"),
-    ];
+    let seen = [("y1", "the upper mass below the ceiling"), ("v1", "speed of the upper mass, downwards")];
+    let read =
+        [seen[0], seen[1], ("y2", "the lower mass below the ceiling"), ("v2", "speed of the lower mass, downwards")];
     let done = [
         ("effort", "springs and motor together on both masses, downwards"),
         ("length", "length of the bar between the masses"),

@@ -81,7 +81,7 @@ pub(crate) fn training(summary: &Summary, path: &Path) -> String {
         let _ = writeln!(text, "  {name:<10} {}{of}{best}", quantity(group.total_as_built, unit));
         if group.as_built != group.values {
             let trained = quantity(group.total, unit);
-            let _ = writeln!(text, "  {:<10} trained as {trained}; the softened interface stretches by the rest", "");
+            let _ = writeln!(text, "  {:<10} trained as {trained}: the law says what is built of it", "");
         }
         if count > 1 {
             let values: Vec<String> = group.as_built.iter().take(10).map(|v| format!("{v:.4}")).collect();

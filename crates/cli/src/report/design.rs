@@ -58,7 +58,7 @@ fn many(report: &GroupReport, widest: usize) -> String {
     };
     let mut text = line(&report.name, group.total_as_built, &group.as_built, &best(report, &shown));
     if group.as_built != group.values {
-        let why = ": the softened interface stretches by the rest";
+        let why = ": the law says what is built of it";
         text.push_str(&line("as trained", group.total, &group.values, why));
     }
     let (least, most) = ends(&report.position);

@@ -69,7 +69,7 @@ fn every_problem_without_a_hand() {
     let sandbox = Sandbox::new("report-problems");
     for (experiment, said) in [
         ("mass-spring", "10 parallel springs"),
-        ("bar-length", "the softened interface stretches by the difference"),
+        ("bar-length", "What is built differs from what was trained, as the law says"),
         ("reach", "reach a goal"),
         ("pendulum", "swing it up"),
     ] {

@@ -32,7 +32,7 @@ pub(crate) fn section(run: &Run) -> Section {
 
 /// Every group with its unit and its limits.
 fn table(groups: &[GroupReport]) -> Markup {
-    let softened = groups.iter().any(|group| group.group.as_built != group.group.values);
+    let differs = groups.iter().any(|group| group.group.as_built != group.group.values);
     html! {
         table.cards {
             caption { "What to build. The bar shows where a value lies between its limits." }
@@ -44,10 +44,10 @@ fn table(groups: &[GroupReport]) -> Markup {
             }
             tbody { @for group in groups { (row(group)) } }
         }
-        @if softened {
+        @if differs {
             p {
-                "What is built differs from what was trained: the law softens an interface that is rigid in reality, and the \
-                 softened interface stretches by the difference."
+                "What is built differs from what was trained, as the law says: an interface that is rigid in reality is soft in \
+                 training, or springs are built as strong as it takes to hold the hand open."
             }
         }
     }

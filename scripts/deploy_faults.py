@@ -51,7 +51,7 @@ def run(hwasp, folder, fault, log):
     process = subprocess.Popen(command + ([] if signals else ["--fault", fault]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if signals:
         # The loop goes once its log has steps; then it is some time into the grasp.
-        while not any(len(path.read_text().splitlines()) > 400 for path in pathlib.Path(log).glob("*.csv")):
+        while not any(len(path.read_text().splitlines()) > 700 for path in pathlib.Path(log).glob("*.csv")):
             time.sleep(0.1)
         process.send_signal(signal.SIGINT)
         if "twice" in fault:

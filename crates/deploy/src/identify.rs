@@ -8,7 +8,7 @@ use hwasp_export::Deployed;
 use crate::controller::hand;
 use crate::error::DeployError;
 use crate::log::{Logged, Row};
-use crate::replay::{Pair, Simulation, acting, of_phase, of_this_hand};
+use crate::replay::{Pair, Simulation, of_phase, of_this_hand};
 
 /// What a hand differs by, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,12 +33,7 @@ pub struct Identified {
 }
 
 /// What counts as one unit of difference: wound, m, and current, A. About what noise and a simulation's error are.
-const UNITS: [f64; 2] = [2e-4, 0.01];
-/// Steps of a grasp before the spool winds, and so many from there on: beyond them the object decides, which nobody weighed.
-const BEFORE: usize = 5;
-const STEPS: usize = 220;
-/// A goal from which on the spool winds, m.
-const WINDS: f64 = 3e-4;
+const UNITS: [f64; 2] = [1e-4, 2e-3];
 /// Numbers of the fit: logarithms of gain and stiffness, then friction, delay and slack in these units.
 const FITTED: usize = 5;
 const SCALES: [f64; 3] = [0.05, 0.05, 2e-3];
@@ -47,7 +42,7 @@ const UPPER: [f64; FITTED] = [1.0, 1.6, 6.0, 3.0, 5.0];
 const BEGIN: [f64; FITTED] = [0.0, 0.0, 0.3, 0.3, 0.1];
 
 /// How much what was calibrated counts, and how far the logarithm of a gain is from it.
-const PRIOR: f64 = 0.02;
+const PRIOR: f64 = 0.01;
 const WIDTH: f64 = 0.1;
 /// A hand that is so much stronger in everything has to leave so much more of a difference, if logs tell the gain.
 const STRONGER: f64 = 1.2;
@@ -64,7 +59,7 @@ fn planted(x: &[f64], stiffness: f64) -> Planted {
     }
 }
 
-/// Part of a log: an episode from when the spool begins to wind.
+/// Part of a log: the closing and opening in the air before a grasp. What is grasped nobody has weighed, and it would only mislead.
 struct Stretch<'l> {
     rows: &'l [Row],
     simulation: Simulation,
@@ -91,18 +86,17 @@ pub fn identify(
             // Closing and opening in the air: there the springs are all that pulls, and friction is with the one and against the other.
             let rows = of_phase(logged, episode, "measure");
             if !rows.is_empty() {
-                stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
+                stretches.push(Stretch {
+                    rows,
+                    simulation: Simulation::new(deployed, object, logged.about.winding_sign)?,
+                    per_ampere,
+                });
             }
-            let rows = acting(logged, episode);
-            let Some(winds) = rows.iter().position(|row| row.goal > WINDS) else { continue };
-            let from = winds.saturating_sub(BEFORE);
-            let rows = &rows[from..rows.len().min(from + STEPS)];
-            stretches.push(Stretch { rows, simulation: Simulation::new(deployed, object)?, per_ampere });
         }
     }
     if stretches.is_empty() {
         return Err(DeployError::Fit {
-            what: "no log has a grasp that wound".to_owned(),
+            what: "no log has a closing in the air, with which each grasp begins".to_owned(),
             hint: "name logs of `hwasp deploy run`, five grasps at least",
         });
     }

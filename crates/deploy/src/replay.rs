@@ -27,6 +27,8 @@ pub struct Simulation {
     settings: HandWorldSettings,
     hand: HandDescription,
     object: LoggedObject,
+    /// Which way the logged motor winds, 1 or -1.
+    sign: f64,
 }
 
 /// A step of a log beside the simulation's.
@@ -36,7 +38,7 @@ pub struct Pair {
     pub time: f64,
     /// Wound, m: logged and simulated.
     pub wound: [f64; 2],
-    /// Current that winds, A.
+    /// Current, A; positive winds.
     pub current: [f64; 2],
 }
 
@@ -45,7 +47,7 @@ impl Simulation {
     ///
     /// # Errors
     /// Where the run has no hand.
-    pub fn new(deployed: &Deployed, object: LoggedObject) -> Result<Self, DeployError> {
+    pub fn new(deployed: &Deployed, object: LoggedObject, sign: f64) -> Result<Self, DeployError> {
         let spec = deployed.spec();
         let no_hand = || DeployError::NoHand { problem: spec.task.name().to_owned() };
         let task = spec.task.settings::<GraspTaskSettings>().ok_or_else(no_hand)?;
@@ -58,7 +60,7 @@ impl Simulation {
             carry: Carry::Stiff,
             planted: Planted::default(),
         };
-        Ok(Self { settings, hand: hand(spec)?.clone(), object })
+        Ok(Self { settings, hand: hand(spec)?.clone(), object, sign })
     }
 
     /// Goes through rows of a log with the hand different by `planted`. The motor's torque per current as it was taken for while
@@ -76,6 +78,7 @@ impl Simulation {
         let transmission = &self.hand.transmission;
         let radius = transmission.spool_radius;
         let current = transmission.tension_limit * radius / per_ampere;
+        let sign = self.sign;
         let own = (OWN_DELAY * 1e3) as usize;
         let mut pairs = Vec::with_capacity(rows.len());
         // What the simulation was in the milliseconds before.
@@ -85,7 +88,7 @@ impl Simulation {
             // The row was written when its goal was sent; what it sensed is of a moment before.
             let age = ((1e3 * row.motor_age).round() as usize).min(past.len() - 1);
             let (wound, amperes) = past[past.len() - 1 - age];
-            pairs.push(Pair { time: row.time, wound: [row.wound, wound], current: [row.torque / per_ampere, amperes] });
+            pairs.push(Pair { time: row.time, wound: [row.wound, wound], current: [sign * row.current, amperes] });
             let next = rows.get(i + 1).map_or(row.palm, |next| next.palm);
             for k in 0..SUBSTEPS {
                 if k == own && row.goal.is_finite() {
@@ -96,7 +99,7 @@ impl Simulation {
                 let spool = world.step(&tool(palm), SpoolDrive::Position { goal: goal / radius, current });
                 past.rotate_left(1);
                 if let Some(last) = past.last_mut() {
-                    *last = (radius * spool.position, spool.current.max(0.0));
+                    *last = (radius * spool.position, spool.current);
                 }
             }
             if !past.iter().all(|(wound, current)| wound.is_finite() && current.is_finite()) {
@@ -168,8 +171,11 @@ pub fn replay(logged: &Logged, deployed: &Deployed) -> Result<Vec<Compared>, Dep
         if rows.is_empty() {
             continue;
         }
-        let pairs =
-            Simulation::new(deployed, object)?.run(rows, Planted::default(), logged.about.torque_per_current)?;
+        let pairs = Simulation::new(deployed, object, logged.about.winding_sign)?.run(
+            rows,
+            Planted::default(),
+            logged.about.torque_per_current,
+        )?;
         let differ = |of: fn(&Pair) -> [f64; 2]| {
             let off =
                 pairs.iter().map(|pair| (pair.time, of(pair)[0] - of(pair)[1])).filter(|(_, off)| off.is_finite());

@@ -6,7 +6,7 @@ use clap::{Subcommand, ValueEnum};
 use hwasp_deploy::object::ObjectKnown;
 use hwasp_tasks::grasp::ShapeKind;
 
-use super::parse::{LAST_SEED, MOST_EPISODES, finite, path, whole};
+use super::parse::{LAST_SEED, MOST_EPISODES, finite, numbers, path, whole};
 
 const SAFETY: &str = "\
 Software is no safety function: keep the arm's own safety settings and the stop button within reach.
@@ -140,14 +140,14 @@ pub(crate) struct DeployRunArgs {
     #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = whole(1..=MOST_EPISODES))]
     pub(crate) episodes: u64,
     /// Edges of the object's bounding box along x, y and z, mm
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, required_unless_present = "dry_run", value_parser = finite)]
-    pub(crate) size: Vec<f64>,
+    #[arg(long, value_name = "X,Y,Z", required_unless_present = "dry_run", value_parser = numbers::<3>)]
+    pub(crate) size: Option<[f64; 3]>,
     /// Its shape, for the table of trials
     #[arg(long)]
     pub(crate) shape: Option<ShapeArg>,
     /// Where it stands in the task's world, mm
-    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 2, default_value = "0,0", allow_negative_numbers = true, value_parser = finite)]
-    pub(crate) at: Vec<f64>,
+    #[arg(long, value_name = "X,Y", default_value = "0,0", allow_hyphen_values = true, value_parser = numbers::<2>)]
+    pub(crate) at: [f64; 2],
     /// The same program against the emulated bench, a process of its own with the hand's physics behind it, and the objects of
     /// held-out episodes; no rig is needed
     #[arg(long, conflicts_with_all = ["size", "shape", "shadow"])]
@@ -215,8 +215,8 @@ pub(crate) struct DeployTrialsArgs {
     #[arg(long, requires = "shape", value_parser = path())]
     pub(crate) run: Option<PathBuf>,
     /// Edges of the object's bounding box, mm
-    #[arg(long, value_name = "X,Y,Z", requires = "shape", value_delimiter = ',', num_args = 3, value_parser = finite)]
-    pub(crate) size: Vec<f64>,
+    #[arg(long, value_name = "X,Y,Z", requires = "shape", value_parser = numbers::<3>)]
+    pub(crate) size: Option<[f64; 3]>,
     /// What else there is to say
     #[arg(long, requires = "shape", default_value = "", hide_default_value = true)]
     pub(crate) note: String,

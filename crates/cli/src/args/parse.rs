@@ -52,6 +52,14 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "it has to be a finite number, such as -2.5".into())
 }
 
+/// Reads numbers that commas part.
+pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let wrong = || format!("it has to be {N} numbers with commas between them, such as {}", ["60"; N].join(","));
+    let read: Vec<f64> =
+        text.split(',').map(|part| finite(part.trim())).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    read.try_into().map_err(|_| wrong())
+}
+
 /// Reads a time, s.
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let number = text.parse().ok().filter(|s| (0.0..=MOST_SECONDS).contains(s));

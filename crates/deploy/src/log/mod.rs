@@ -50,6 +50,8 @@ pub struct About {
     pub torque_per_current: f64,
     /// Of the spool, m.
     pub spool_radius: f64,
+    /// Which way the motor winds, 1 or -1.
+    pub winding_sign: f64,
     /// How it is known where the object is.
     pub object: String,
     /// SHA-256 of what the rig says of its motor.

@@ -22,6 +22,7 @@ fn about() -> About {
         design: vec![0.01, 0.02],
         torque_per_current: 1.3,
         spool_radius: 0.008,
+        winding_sign: 1.0,
         object: "carried".to_owned(),
         motor: "0".repeat(64),
         version: "0".to_owned(),

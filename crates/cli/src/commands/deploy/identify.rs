@@ -14,7 +14,7 @@ use crate::output;
 use crate::progress::Counter;
 
 /// Generations of the search, at most.
-const GENERATIONS: u32 = 60;
+const GENERATIONS: u32 = 150;
 
 pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let logs: Vec<Logged> =

@@ -113,6 +113,7 @@ impl Job<'_> {
             design: self.deployed.design().to_vec(),
             torque_per_current: spool.torque_per_current,
             spool_radius: spool.radius,
+            winding_sign: spool.sign,
             object: self.args.object.known().name().to_owned(),
             motor: hwasp_deploy::calibrate::motor_hash(self.rig),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -136,14 +137,14 @@ fn placed(args: &DeployRunArgs) -> Result<Placed, Failure> {
     let wrong = |name, value: f64, limits: &str| {
         Err(Failure::input(DeployError::Value { name, value: format!("{value} mm"), limits: limits.to_owned() }))
     };
-    let [size, place] = [&args.size, &args.at];
-    if let Some(&edge) = size.iter().find(|edge| !(10.0..=200.0).contains(*edge)) {
+    let (size, place) = (args.size.unwrap_or_default(), args.at);
+    if let Some(edge) = size.into_iter().find(|edge| !(10.0..=200.0).contains(edge)) {
         return wrong("--size", edge, "10 to 200 mm");
     }
-    if let Some(&at) = place.iter().find(|at| !(-150.0..=150.0).contains(*at)) {
+    if let Some(at) = place.into_iter().find(|at| !(-150.0..=150.0).contains(at)) {
         return wrong("--at", at, "-150 to 150 mm");
     }
-    let size: [f64; 3] = std::array::from_fn(|i| 1e-3 * size[i]);
+    let size = size.map(|edge| 1e-3 * edge);
     let place = [1e-3 * place[0], 1e-3 * place[1], 0.5 * size[2]];
     Ok(Placed { size, place, shape: args.shape.map(crate::args::ShapeArg::kind), start: None })
 }

@@ -15,7 +15,7 @@ pub(crate) fn run(args: &DeployTrialsArgs, catalogue: &Catalogue) -> Result<(), 
     let trials = match (args.shape, args.held, &args.run) {
         (Some(shape), Some(held), Some(run)) => {
             let spec = hwasp_runs::saved_experiment(run_folder(run)?, &[], catalogue).map_err(Failure::input)?;
-            let size = std::array::from_fn(|i| args.size.get(i).map_or(0.0, |mm| 1e-3 * mm));
+            let size = args.size.unwrap_or_default().map(|mm| 1e-3 * mm);
             let (task, run) = (spec.task.name().to_owned(), run.display().to_string());
             let trial =
                 Trial { date: date::now(), task, run, shape: shape.kind(), size, held, note: args.note.clone() };

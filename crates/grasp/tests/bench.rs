@@ -174,7 +174,7 @@ fn slack_and_a_real_limit_change_the_torques() {
         transmission.tension_limit *= gain;
         let real = hwasp_core::Law::new(TendonHand::new(&transmission, &TendonHandSettings::default()).unwrap());
         let nominal = hwasp_core::Law::new(nominal);
-        let (mut limited, mut wound) = (0, 0.0);
+        let (mut limited, mut wound) = (0, 0.0_f64);
         for t in 0..260 {
             let command = [0.0, 0.0002 * (0.8 + 0.2 * random.random::<f64>())];
             let (mut state, mut effort, mut wanted) = ([0.0; 7], [0.0; 7], [0.0; 7]);
@@ -183,7 +183,7 @@ fn slack_and_a_real_limit_change_the_torques() {
             nominal.effort(&SEARCHED, &command, &state, &mut effort);
             real.effort(&SEARCHED, &command, &state, &mut wanted);
             robot.step(&effort, &command);
-            wound += command[1];
+            wound = (wound + command[1]).min(0.045); // all of the spool's travel
             let sim = robot.plant().simulation();
             for (name, wanted) in names::TORQUE_ACTUATORS.iter().zip(wanted) {
                 let given = sim.ctrl()[sim.actuator(name).unwrap().index()];

@@ -203,7 +203,7 @@ impl GraspPlant {
         [0, 1, 2].map(|digit| of(2 * digit) + of(2 * digit + 1))
     }
 
-    /// The law's torques, where the motor's real limit is not the law's: all tensions are longer or shorter by one factor.
+    /// The law's torques, where the motor's real limit is not the law's: all tensions are larger or smaller by one factor.
     fn apply(&mut self, effort: &[f64]) {
         let (limit, real) = (self.transmission.tension_limit, self.limit());
         let factor = if real == limit {

@@ -9,7 +9,7 @@
 //! | `motor_travel` | m | tendon wound, as commanded or by the encoder, noisy |
 //! | `motor_torque` | N·m | of the last step |
 //!
-//! [`Bench`](hwasp_tasks::grasp::Bench) says what of it is sensed, how late and how wrong.
+//! [`Bench`] says what of it is sensed, how late and how wrong.
 //!
 //! # Command
 //! | port | unit | range |
@@ -18,7 +18,7 @@
 //! | `motor` | m per step | ±0.2 mm |
 //!
 //! # State, effort and design
-//! Those of the hand's law, [`TendonHand`]: motor travel and joint angles; joint torques and the motor's torque; twelve
+//! Those of the hand's law, [`TendonHand`](hwasp_tasks::hand::TendonHand): motor travel and joint angles; joint torques and the motor's torque; twelve
 //! parameters of the transmission. The controller never sees the joint angles: the real hand has no sensors for them.
 //!
 //! # Reward

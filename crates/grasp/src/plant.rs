@@ -203,22 +203,31 @@ impl GraspPlant {
         [0, 1, 2].map(|digit| of(2 * digit) + of(2 * digit + 1))
     }
 
-    /// The law's torques, where the motor's real limit is not the law's: all tensions are larger or smaller by one factor.
-    fn apply(&mut self, effort: &[f64]) {
+    /// By how much all tensions are larger or smaller where the motor's real limit is not the law's.
+    fn real_share(&self) -> f64 {
         let (limit, real) = (self.transmission.tension_limit, self.limit());
-        let factor = if real == limit {
-            1.0
-        } else {
-            let (_, tension) =
-                yielding(self.wound(), self.taken_up(), self.transmission.tendon_stiffness, f64::INFINITY);
-            if tension > 0.0 { tension.min(real) / tension.min(limit) } else { 1.0 }
-        };
-        for (joint, (&control, &torque)) in self.places.drive_ctrl.iter().zip(effort).enumerate() {
-            let kind = names::KIND_OF_JOINT[joint];
-            let spring = self.design[4 + kind] * (self.sim.qpos()[self.places.joints[joint]] + self.design[8 + kind]);
-            self.sim.ctrl_mut()[control] = if factor == 1.0 { torque } else { factor * (torque + spring) - spring };
+        if real == limit {
+            return 1.0;
         }
-        self.motor_torque = (factor * effort[6]).clamp(0.0, self.transmission.spool_radius * real);
+        let stiffness = self.transmission.tendon_stiffness;
+        let (_, tension) = yielding(self.wound(), self.taken_up(), stiffness, f64::INFINITY);
+        if tension > 0.0 { tension.min(real) / tension.min(limit) } else { 1.0 }
+    }
+
+    /// The law's torques: the tendons' share of them as large as the motor's real limit makes it, the springs' as it is.
+    fn apply(&mut self, effort: &[f64]) {
+        let share = self.real_share();
+        for (joint, (&control, &torque)) in self.places.drive_ctrl.iter().zip(effort).enumerate() {
+            let mut real = torque;
+            if share != 1.0 {
+                let kind = names::KIND_OF_JOINT[joint];
+                let angle = self.sim.qpos()[self.places.joints[joint]];
+                let spring = self.design[4 + kind] * (angle + self.design[8 + kind]);
+                real = share * (torque + spring) - spring;
+            }
+            self.sim.ctrl_mut()[control] = real;
+        }
+        self.motor_torque = (share * effort[6]).clamp(0.0, self.transmission.spool_radius * self.limit());
     }
 
     /// Winds the tendons of the simulation, each simulation step anew: the spool gives way where the motor's torque does not

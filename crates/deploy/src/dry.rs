@@ -7,9 +7,9 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use hwasp_core::{Environment, Purpose, Robot, stream};
+use hwasp_emulators::hand::{Planted, held_out};
 use hwasp_export::Deployed;
-use hwasp_grasp::{Grasp, GraspTask, Object, settings_of};
+use hwasp_grasp::{Grasp, Object, settings_of};
 use hwasp_tasks::grasp::GraspTaskSettings;
 use serde_json::{Value, json};
 
@@ -17,27 +17,6 @@ use crate::controller::hand;
 use crate::error::{DeployError, file};
 use crate::rig::Rig;
 use crate::run::{Placed, Stage};
-
-/// What differs between the emulated hand and its description, for trials of what a controller and a fit bear.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Differs {
-    /// The motor's torque per current, as a multiple of the description's.
-    pub torque_gain: f64,
-    /// Stiffness of a tendon, N/m.
-    pub tendon_stiffness: Option<f64>,
-    /// Friction of motor and spool, N·m.
-    pub friction: f64,
-    /// Tendon that is wound before it pulls, m.
-    pub slack: f64,
-    /// From the motor's goal to the spool, s.
-    pub delay: f64,
-}
-
-impl Default for Differs {
-    fn default() -> Self {
-        Self { torque_gain: 1.0, tendon_stiffness: None, friction: 0.0, slack: 0.0, delay: 0.0 }
-    }
-}
 
 /// The process with the emulators.
 #[derive(Debug)]
@@ -53,7 +32,7 @@ fn wrong(what: impl std::fmt::Display) -> DeployError {
 
 impl BenchProcess {
     /// Starts it by `command`, to which the path of its settings is added: `settings` is where they are written. Returns it with
-    /// the rig that reaches it: that of `rig`, at the ports of the emulators.
+    /// the rig that reaches it: that of `rig`, at the ports of the emulators. The hand differs from its description by `planted`.
     ///
     /// # Errors
     /// Where it does not start.
@@ -62,9 +41,9 @@ impl BenchProcess {
         settings: &Path,
         deployed: &Deployed,
         rig: &Rig,
-        differs: &Differs,
+        planted: &Planted,
     ) -> Result<(Self, Rig), DeployError> {
-        let text = bench_settings(deployed, rig, differs)?.to_string();
+        let text = bench_settings(deployed, rig, planted)?.to_string();
         std::fs::write(settings, text).map_err(file("written", settings))?;
         let mut child = command
             .arg(settings)
@@ -129,7 +108,7 @@ impl Drop for BenchProcess {
 }
 
 /// The bench of a rig with the hand of a run.
-fn bench_settings(deployed: &Deployed, rig: &Rig, differs: &Differs) -> Result<Value, DeployError> {
+fn bench_settings(deployed: &Deployed, rig: &Rig, planted: &Planted) -> Result<Value, DeployError> {
     let hand = hand(deployed.spec())?;
     // The base in the world: what the world is in the base, the other way round.
     let rotation = rig.world.rotation.map(|r| -r);
@@ -142,18 +121,19 @@ fn bench_settings(deployed: &Deployed, rig: &Rig, differs: &Differs) -> Result<V
             "tension_limit": hand.transmission.tension_limit,
             "base_position": position,
             "base_rotation": rotation,
-            "torque_gain": differs.torque_gain,
-            "tendon_stiffness": differs.tendon_stiffness,
-            "friction": differs.friction,
-            "slack": differs.slack,
-            "delay": differs.delay,
+            "torque_gain": planted.torque_gain,
+            "tendon_stiffness": planted.tendon_stiffness,
+            "friction": planted.friction,
+            "slack": planted.slack,
+            "delay": planted.delay,
+            "zero": planted.zero,
         },
     }))
 }
 
 /// Draws the objects of held-out episodes, as `hwasp eval` has them: by seed and index.
 pub struct HeldOut {
-    robot: Robot<GraspTask>,
+    grasp: Grasp,
     seed: u64,
 }
 
@@ -167,13 +147,12 @@ impl HeldOut {
         let no_hand = || DeployError::NoHand { problem: spec.task.name().to_owned() };
         let settings = spec.task.settings::<GraspTaskSettings>().ok_or_else(no_hand)?;
         let grasp = Grasp::new(settings_of(settings)).map_err(wrong)?;
-        Ok(Self { robot: grasp.robot(None), seed: seed.unwrap_or(spec.train.evaluation_seed) })
+        Ok(Self { grasp, seed: seed.unwrap_or(spec.train.evaluation_seed) })
     }
 
     /// The object of an episode, and where the palm starts above it, m.
-    pub fn draw(&mut self, index: u64) -> (Object, [f64; 3]) {
-        self.robot.reset(&mut stream(self.seed, Purpose::EvaluationReset, 0, index));
-        (self.robot.plant().object().clone(), self.robot.plant().palm())
+    pub fn draw(&self, index: u64) -> (Object, [f64; 3]) {
+        held_out(&self.grasp, self.seed, index)
     }
 }
 

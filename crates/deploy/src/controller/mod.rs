@@ -7,6 +7,7 @@ mod targets;
 use hwasp_core::{Actor, Normalizer};
 use hwasp_experiment::Experiment;
 use hwasp_export::Deployed;
+use hwasp_tasks::grasp::{GraspTaskSettings, ObjectSensed, TravelSensed, Viewpoint};
 use hwasp_tasks::hand::HandDescription;
 use hwasp_workshop::design::hand_of;
 
@@ -50,18 +51,12 @@ impl Training {
     /// [`DeployError::NoHand`] where it is of another problem.
     pub fn of(spec: &Experiment) -> Result<Self, DeployError> {
         let no_hand = || DeployError::NoHand { problem: spec.task.name().to_owned() };
-        let settings = spec.task.settings::<hwasp_tasks::grasp::GraspTaskSettings>().ok_or_else(no_hand)?;
-        // Keys that only later experiments have are read as what is written.
-        let written: toml::Table = spec.to_toml().ok().and_then(|text| text.parse().ok()).unwrap_or_default();
-        let task = written.get("task").and_then(toml::Value::as_table);
-        let word = |key: &str| task.and_then(|task| task.get(key)).and_then(toml::Value::as_str);
-        let felt =
-            word("grasp_felt").and_then(|text| hwasp_core::parse_quantity(text, hwasp_core::Dimension::Torque).ok());
-        let told = word("object_sensed") != Some("tracked") && word("object_sensed").is_some();
+        let settings = spec.task.settings::<GraspTaskSettings>().ok_or_else(no_hand)?;
+        let bench = &settings.bench;
         Ok(Self {
-            encoder: word("travel_sensed") == Some("encoder"),
-            felt: felt.filter(|_| told).unwrap_or(FELT),
-            from_palm: settings.viewpoint == hwasp_tasks::grasp::Viewpoint::Palm,
+            encoder: bench.travel_sensed == TravelSensed::Encoder,
+            felt: if bench.object_sensed == ObjectSensed::Tracked { FELT } else { bench.grasp_felt },
+            from_palm: settings.viewpoint == Viewpoint::Palm,
             height: settings.height,
             size: settings.size,
             offset: settings.offset,

@@ -134,7 +134,7 @@ impl HandWorld {
             let palm = &mut built.palm;
             [palm.position_gain, palm.velocity_gain, palm.force_limit] = STIFF;
         }
-        let (object, palm) = draw(&grasp, &settings.design, 0, 0);
+        let (object, palm) = held_out(&grasp, 0, 0);
         let mut hand = CarriedHand::new(&built, &settings.design)?;
         hand.start(object.clone(), palm)?;
         let waiting = (settings.planted.delay / STEP).round() as usize;
@@ -155,7 +155,7 @@ impl HandWorld {
 
     /// The object of an episode of evaluation, and where the palm starts above it in the world, m.
     pub fn drawn(&self, seed: u64, index: u64) -> (Object, [f64; 3]) {
-        draw(&self.grasp, &self.settings.design, seed, index)
+        held_out(&self.grasp, seed, index)
     }
 
     /// Puts an object on the floor instead of the one that is there, and opens the hand, whose palm is at the tool.
@@ -235,10 +235,10 @@ impl World for HandWorld {
     }
 }
 
-/// The object of an episode of evaluation, and where the palm starts.
-fn draw(grasp: &Grasp, design: &[f64; DESIGN_LEN], seed: u64, index: u64) -> (Object, [f64; 3]) {
+/// The object of an episode of evaluation, as `hwasp eval` has it, and where the palm starts above it in the world, m. Neither depends on
+/// the design.
+pub fn held_out(grasp: &Grasp, seed: u64, index: u64) -> (Object, [f64; 3]) {
     let mut robot = grasp.robot(None);
-    robot.set_design(design);
     robot.reset(&mut stream(seed, Purpose::EvaluationReset, 0, index));
     (robot.plant().object().clone(), robot.plant().palm())
 }

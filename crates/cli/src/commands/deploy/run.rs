@@ -242,8 +242,8 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
     let mut command = std::process::Command::new(std::env::current_exe()?);
     command.args(["deploy", "bench"]);
     let settings = std::env::temp_dir().join(format!("hwasp-bench-{}.json", std::process::id()));
-    let differs = differs(&args.plant)?;
-    let started = BenchProcess::start(command, &settings, deployed, &rig, &differs);
+    let planted = planted(&args.plant)?;
+    let started = BenchProcess::start(command, &settings, deployed, &rig, &planted);
     // It was read when the bench said that it is ready, or will never be.
     let _ = std::fs::remove_file(&settings);
     let (bench, mut rig) = started?;
@@ -271,8 +271,8 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
 
 /// What the emulated hand differs by.
 #[cfg(feature = "mujoco")]
-fn differs(plant: &[String]) -> Result<hwasp_deploy::dry::Differs, Failure> {
-    let mut differs = hwasp_deploy::dry::Differs::default();
+fn planted(plant: &[String]) -> Result<hwasp_emulators::hand::Planted, Failure> {
+    let mut planted = hwasp_emulators::hand::Planted::default();
     for text in plant {
         let wrong = || {
             Failure::input(format!(
@@ -282,13 +282,13 @@ fn differs(plant: &[String]) -> Result<hwasp_deploy::dry::Differs, Failure> {
         let (name, value) = text.split_once('=').ok_or_else(wrong)?;
         let value: f64 = value.trim().parse().map_err(|_| wrong())?;
         match name.trim() {
-            "torque_gain" => differs.torque_gain = value,
-            "tendon_stiffness" => differs.tendon_stiffness = Some(value),
-            "friction" => differs.friction = value,
-            "slack" => differs.slack = value,
-            "delay" => differs.delay = value,
+            "torque_gain" => planted.torque_gain = value,
+            "tendon_stiffness" => planted.tendon_stiffness = Some(value),
+            "friction" => planted.friction = value,
+            "slack" => planted.slack = value,
+            "delay" => planted.delay = value,
             _ => return Err(wrong()),
         }
     }
-    Ok(differs)
+    Ok(planted)
 }

@@ -10,6 +10,7 @@ use crate::sensors::{Drawn, Reading, Sensors};
 use crate::settings::GraspSettings;
 use hwasp_mujoco::engine::{EditError, PhysicsFault, Simulation, TendonId, UnknownName, Wrench};
 use hwasp_tasks::grasp::rules::WORKSPACE;
+use hwasp_tasks::grasp::{Bounds, Targets};
 use hwasp_tasks::hand::{DESIGN_LEN, SUBSTEPS, TransmissionDescription, names};
 
 /// Hand and object in MuJoCo. Implements [`Plant`]: efforts are the six joint torques and the motor's, commands the palm's
@@ -26,8 +27,6 @@ pub struct GraspPlant {
     sensors: Sensors,
     /// What the bench of this episode is like.
     drawn: Drawn,
-    /// The most that the palm's target moves in a step, m.
-    palm_reach: f64,
     /// Standard deviations, as in the settings.
     sensor_noise: [f64; 2],
     actuation_noise: [f64; 2],
@@ -35,14 +34,12 @@ pub struct GraspPlant {
     /// Which axes of the palm are commanded: z, or all.
     axes: std::ops::Range<usize>,
     object: Object,
-    /// The palm's target, m.
-    target: [f64; 3],
-    /// What of it the arm has followed, m.
+    /// What commands add up to: the palm's target, and what is wound.
+    targets: Targets,
+    /// How far the arm has followed the palm's target, m.
     followed: [f64; 3],
     /// Where the spool is, m of tendon.
     held: f64,
-    /// Wound so far, m.
-    travel: f64,
     /// The motor's torque in the last step, N·m.
     motor_torque: f64,
     noise: Stream,
@@ -57,6 +54,11 @@ impl GraspPlant {
     pub(super) fn new(settings: &GraspSettings, law: Law, sim: Simulation, drive: Drive) -> Result<Self, UnknownName> {
         let mut rng = Stream::seed_from_u64(0);
         let period = settings.hand.step_time();
+        let bounds = Bounds {
+            workspace: WORKSPACE,
+            palm_step: settings.bench.palm_speed.map_or(f64::INFINITY, |speed| speed * period),
+            travel: settings.hand.transmission.travel,
+        };
         Ok(Self {
             places: Places::look_up(&sim, &drive)?,
             sim,
@@ -65,17 +67,15 @@ impl GraspPlant {
             design: [0.0; DESIGN_LEN],
             sensors: Sensors::new(&settings.bench, period),
             drawn: Drawn::default(),
-            palm_reach: settings.bench.palm_speed.map_or(f64::INFINITY, |speed| speed * period),
             transmission: settings.hand.transmission.clone(),
             sensor_noise: settings.sensor_noise,
             actuation_noise: settings.actuation_noise,
             disturbance: settings.disturbance,
             axes: 3 - settings.palm.commands().len()..3,
             object: Object::draw(settings, 1.0, &mut rng),
-            target: [0.0; 3],
+            targets: Targets::new([0.0; 3], 0.0, bounds),
             followed: [0.0; 3],
             held: 0.0,
-            travel: 0.0,
             motor_torque: 0.0,
             noise: rng,
             travel_error: 0.0,
@@ -112,7 +112,7 @@ impl GraspPlant {
 
     /// Wound so far, as commanded, m.
     pub fn travel(&self) -> f64 {
-        self.travel
+        self.targets.travel
     }
 
     /// The motor's torque in the last step, N·m.
@@ -139,13 +139,13 @@ impl GraspPlant {
         object.enter(&mut self.sim, places.object_body, places.object_geom[0], places.floor)?;
         let state = self.sim.qpos_mut();
         state[places.object..][..7].copy_from_slice(&object.pose());
-        self.target = [0.0, 0.0, palm_height];
-        for (&at, target) in places.palm.iter().zip(self.target) {
+        (self.targets.palm, self.targets.travel) = ([0.0, 0.0, palm_height], 0.0);
+        for (&at, target) in places.palm.iter().zip(self.targets.palm) {
             state[at] = target;
         }
-        self.followed = self.target;
+        self.followed = self.targets.palm;
         self.object = object;
-        (self.travel, self.held, self.motor_torque, self.fault) = (0.0, 0.0, 0.0, None);
+        (self.held, self.motor_torque, self.fault) = (0.0, 0.0, None);
         self.noise = Stream::seed_from_u64(rng.random());
         self.drawn = self.sensors.draw(progress, rng);
         let reading = self.look();
@@ -168,7 +168,7 @@ impl GraspPlant {
         Reading {
             palm: off(0, self.palm()),
             object: off(3, self.object_position()),
-            commanded: self.travel + self.sensed[6],
+            commanded: self.targets.travel + self.sensed[6],
             encoder: self.held + self.sensed[6],
             torque: self.motor_torque * self.drawn.torque_gain,
         }
@@ -190,7 +190,7 @@ impl GraspPlant {
 
     /// How much of the tendon is wound beyond the slack, m.
     fn wound(&self) -> f64 {
-        (self.travel + self.travel_error).clamp(0.0, self.transmission.travel) - self.drawn.slack
+        (self.targets.travel + self.travel_error).clamp(0.0, self.transmission.travel) - self.drawn.slack
     }
 
     /// What the digits have taken up of their tendons, m.
@@ -266,16 +266,13 @@ pub fn yielding(wound: f64, mut taut: [f64; 3], stiffness: f64, limit: f64) -> (
 impl Plant for GraspPlant {
     fn advance(&mut self, effort: &[f64], command: &[f64]) {
         let (motor, palm) = (command[command.len() - 1], &command[..command.len() - 1]);
-        let far = palm.iter().map(|motion| motion * motion).sum::<f64>().sqrt();
-        let share = if far > self.palm_reach { self.palm_reach / far } else { 1.0 };
-        for (axis, motion) in self.axes.clone().zip(palm) {
-            let [lo, hi] = WORKSPACE[axis];
-            self.target[axis] = (self.target[axis] + share * motion).clamp(lo, hi);
-        }
+        let mut motion = [0.0; 3];
+        motion[self.axes.clone()].copy_from_slice(palm);
+        self.targets.advance(motion, motor);
         for axis in 0..3 {
             let off = if self.axes.contains(&axis) { self.normal(self.actuation_noise[0]) } else { 0.0 };
-            let behind = self.target[axis] - self.followed[axis];
-            self.followed[axis] = self.target[axis] - self.drawn.behind * behind;
+            let behind = self.targets.palm[axis] - self.followed[axis];
+            self.followed[axis] = self.targets.palm[axis] - self.drawn.behind * behind;
             self.sim.ctrl_mut()[self.places.palm_ctrl[axis]] = self.followed[axis] + off;
         }
         for body in [self.places.palm_body, self.places.object_body] {
@@ -283,7 +280,6 @@ impl Plant for GraspPlant {
             let torque = std::array::from_fn(|_| self.normal(self.disturbance[1]));
             self.sim.set_wrench(body, Wrench { force, torque });
         }
-        self.travel = (self.travel + motor).clamp(0.0, self.transmission.travel);
         let stepped = match self.drive {
             Drive::Torques => {
                 self.apply(effort);
@@ -304,7 +300,7 @@ impl Plant for GraspPlant {
     }
 
     fn state(&self, out: &mut [f64]) {
-        out[0] = self.travel + self.travel_error - self.drawn.slack;
+        out[0] = self.targets.travel + self.travel_error - self.drawn.slack;
         for (out, &at) in out[1..].iter_mut().zip(&self.places.joints) {
             *out = self.sim.qpos()[at];
         }

@@ -1,6 +1,7 @@
 //! Where the tendons begin to pull, and the friction of a slack spool.
 
-use crate::controller::Targets;
+use hwasp_tasks::grasp::Targets;
+
 use crate::drive::{Drive, Finish, Manner, Motion, Progress, Senses};
 use crate::error::DeployError;
 use crate::record::Phase;

@@ -2,7 +2,6 @@
 
 mod ports;
 mod spool;
-mod targets;
 
 use hwasp_core::{Actor, Normalizer};
 use hwasp_experiment::Experiment;
@@ -15,7 +14,6 @@ use crate::error::DeployError;
 
 pub use ports::{Sensed, Sensor};
 pub use spool::Spool;
-pub use targets::{Bounds, Targets};
 
 use ports::{Actuator, actuators, sensors};
 

@@ -12,10 +12,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use hwasp_drivers::{Arm, Motor};
-use hwasp_tasks::grasp::ShapeKind;
+use hwasp_tasks::grasp::{Bounds, ShapeKind, Targets};
 
 use crate::clock::Clock;
-use crate::controller::{Bounds, Spool, Targets};
+use crate::controller::Spool;
 use crate::pace::{Jitter, Pace};
 use crate::record::{Event, Sink, Step};
 use crate::rig::{Frame, Rig};

@@ -3,8 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use hwasp_tasks::grasp::Targets;
+
 use super::{Manner, Senses};
-use crate::controller::{Controller, Sensed, Targets};
+use crate::controller::{Controller, Sensed};
 use crate::object::Object;
 use crate::record::{Phase, Step};
 use crate::safety::Response;

@@ -2,8 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use hwasp_tasks::grasp::Targets;
+
 use super::{Drive, Finish, Manner, Motion, Progress, Rest, Senses};
-use crate::controller::Targets;
 use crate::record::{Event, Phase};
 use crate::safety::{Response, Verdict};
 

@@ -4,10 +4,10 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use hwasp_deploy::controller::Targets;
 use hwasp_deploy::drive::{Bench, Drive, Finish, Manner, Motion, Progress, Senses};
 use hwasp_deploy::record::{Event, Phase};
 use hwasp_deploy::safety::{Cause, Response, Verdict, reaction};
+use hwasp_tasks::grasp::Targets;
 
 use super::doubles::{FakeArm, FakeMotor, Fault, Kept, VirtualClock, world};
 

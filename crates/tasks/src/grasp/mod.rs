@@ -8,9 +8,11 @@ mod manual;
 mod problem;
 pub mod rules;
 mod settings;
+mod targets;
 
 pub use bench::{Bench, ObjectSensed, TravelSensed};
 pub use carried::CarriedObject;
 pub use env::env_spec;
 pub use problem::{Engine, GraspProblem, Scene};
 pub use settings::{GraspTaskSettings, HandRangeKind, Inertia, ShapeKind, Viewpoint};
+pub use targets::{Bounds, Targets};

@@ -1,4 +1,4 @@
-//! What commands add up to.
+//! What commands add up to: in training and on the bench.
 
 /// Where targets may be, and how fast they may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Bounds {
     pub travel: f64,
 }
 
-/// The targets of palm and spool: the sums of what was commanded, within bounds, as in training.
+/// The targets of palm and spool: the sums of what was commanded, within bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Targets {
     /// m, in the world.

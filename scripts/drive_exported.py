@@ -18,7 +18,7 @@ import numpy as np
 import onnxruntime
 from exported_scene import clearance, compile_scene, draw_object
 
-DRAWN = ("torque_gain", "limit_gain", "slack", "arm_lag", "delay")  # once an episode
+DRAWN = ("torque_gain", "limit_gain", "motor_friction", "slack", "arm_lag", "delay")  # once an episode
 
 
 def read_contract(path):
@@ -81,12 +81,14 @@ def grasp(path, contract, controller, rng):
         slide.qpos[:] = value
     mujoco.mj_forward(model, data)
     # The bench of this episode.
-    gain, weak, slack, lag, delay = (rng.uniform(*bench[name]) for name in DRAWN)
-    sensors, most, follow = Sensors(contract, round(delay / period), rng), weak * motor.tension_limit, dict(target)
-    torque, held, moments, grasped = 0.0, 0.0, [], model.geom(names.object_geom).id
+    gain, weak, friction, slack, lag, delay = (rng.uniform(*bench[name]) for name in DRAWN)
+    sensors, follow = Sensors(contract, round(delay / period), rng), dict(target)
+    most = max(weak * motor.tension_limit - friction / motor.spool_radius, 0.0)
+    torque, rubbed, held, moments, grasped = 0.0, 0.0, 0.0, [], model.geom(names.object_geom).id
     thumb, fingers = ({model.geom(geom).id for geom in part} for part in (names.thumb, names.fingers))
     for _ in range(contract.control["horizon_steps"]):
-        seen = {"motor_travel": held if bench["travel_sensed"] == "encoder" else target["motor"], "motor_torque": gain * torque}
+        travel = target["motor"] if bench["travel_sensed"] == "commanded" else held
+        seen = {"motor_travel": travel, "motor_torque": gain * (torque + rubbed), "motor_travel_target": target["motor"]}
         for axis, slide, *values in zip("xyz", palm, pose, box):
             seen |= zip((f"palm_{axis}", f"object_{axis}", f"size_{axis}"), (slide.qpos[0], *values))
         commands = controller.run(["command"], {"observation": sensors.read(seen)[None]})[0][0].astype(float)
@@ -110,6 +112,8 @@ def grasp(path, contract, controller, rng):
                 winch.ctrl[:] = travel
             mujoco.mj_step(model, data)
         torque, held = motor.spool_radius * tension, travel + slack
+        if commands[-1]:  # friction is against the spool, which winds, is held back, or pays out
+            rubbed = friction if commands[-1] > 0 or wound + slack > held else -friction
         touched = {int(geom) for contact in data.contact for geom in contact.geom if grasped in contact.geom}
         held_at = pose[:3] - [slide.qpos[0] for slide in palm]
         moments.append((clearance(thing, pose), bool(touched & thumb and touched & fingers), held_at))

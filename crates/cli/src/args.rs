@@ -16,7 +16,7 @@ use hwasp_report::play;
 
 pub(crate) use deploy::{
     DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployIdentifyArgs, DeployInitArgs,
-    DeployReplayArgs, DeployRunArgs, DeployTrialsArgs, RigArgs, ShapeArg,
+    DeployRehearseArgs, DeployReplayArgs, DeployRunArgs, DeployTrialsArgs, RigArgs, ShapeArg,
 };
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};

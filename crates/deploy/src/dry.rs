@@ -7,11 +7,12 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use hwasp_emulators::bench::{BenchSettings, HandSettings, object_text};
 use hwasp_emulators::hand::{Planted, held_out};
 use hwasp_export::Deployed;
 use hwasp_grasp::{Grasp, Object, settings_of};
 use hwasp_tasks::grasp::GraspTaskSettings;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::controller::hand;
 use crate::error::{DeployError, file};
@@ -43,7 +44,7 @@ impl BenchProcess {
         rig: &Rig,
         planted: &Planted,
     ) -> Result<(Self, Rig), DeployError> {
-        let text = bench_settings(deployed, rig, planted)?.to_string();
+        let text = serde_json::to_string(&bench_settings(deployed, rig, planted)?).map_err(wrong)?;
         std::fs::write(settings, text).map_err(file("written", settings))?;
         let mut child = command
             .arg(settings)
@@ -108,27 +109,29 @@ impl Drop for BenchProcess {
 }
 
 /// The bench of a rig with the hand of a run.
-fn bench_settings(deployed: &Deployed, rig: &Rig, planted: &Planted) -> Result<Value, DeployError> {
-    let hand = hand(deployed.spec())?;
-    // The base in the world: what the world is in the base, the other way round.
-    let rotation = rig.world.rotation.map(|r| -r);
-    let position = rig.frame().place(&hwasp_drivers::Pose::default());
-    let arm = if rig.arm.rate > 125.0 { "e-series" } else { "cb3" };
-    Ok(json!({
-        "arm": arm,
-        "hand": {
-            "design": deployed.design(),
-            "tension_limit": hand.transmission.tension_limit,
-            "base_position": position,
-            "base_rotation": rotation,
-            "torque_gain": planted.torque_gain,
-            "tendon_stiffness": planted.tendon_stiffness,
-            "friction": planted.friction,
-            "slack": planted.slack,
-            "delay": planted.delay,
-            "zero": planted.zero,
-        },
-    }))
+fn bench_settings(deployed: &Deployed, rig: &Rig, planted: &Planted) -> Result<BenchSettings, DeployError> {
+    let transmission = &hand(deployed.spec())?.transmission;
+    let design = deployed.design().try_into().map_err(|_| wrong("the design is none of a hand"))?;
+    let &Planted { torque_gain, tendon_stiffness, friction, slack, delay, zero } = planted;
+    Ok(BenchSettings {
+        arm: Some(if rig.arm.rate > 125.0 { "e-series" } else { "cb3" }.to_owned()),
+        hand: Some(HandSettings {
+            design,
+            tension_limit: Some(transmission.tension_limit),
+            // The base in the world: what the world is in the base, the other way round.
+            base_position: rig.frame().place(&hwasp_drivers::Pose::default()),
+            base_rotation: rig.world.rotation.map(|r| -r),
+            palm: [0.0; 3],
+            compliant: false,
+            torque_gain,
+            tendon_stiffness: Some(tendon_stiffness.unwrap_or(transmission.tendon_stiffness)),
+            friction,
+            slack,
+            delay,
+            zero,
+        }),
+        ..BenchSettings::default()
+    })
 }
 
 /// Draws the objects of held-out episodes, as `hwasp eval` has them: by seed and index.
@@ -187,11 +190,7 @@ impl Stage for DryStage {
         let size = object.bounding_box();
         let [x, y] = object.place;
         let shape = Some(object.kind);
-        let order = json!({
-            "kind": object.kind.name(), "size": object.size, "mass": object.mass, "inertia": object.inertia,
-            "friction": object.friction, "place": object.place, "yaw": object.yaw, "lying": object.lying,
-        });
-        self.order(&format!("object {order}"))?;
+        self.order(&format!("object {}", object_text(&object)))?;
         if let Some((after, fault)) = self.fault.take() {
             let bench = Arc::clone(&self.bench);
             std::thread::spawn(move || {

@@ -42,6 +42,8 @@ pub struct GraspPlant {
     held: f64,
     /// The motor's torque in the last step, N·m.
     motor_torque: f64,
+    /// What of it friction takes: more while the spool winds, less while it pays out, N·m.
+    rubbed: f64,
     noise: Stream,
     /// What the motor travel is off in this step, m.
     travel_error: f64,
@@ -77,6 +79,7 @@ impl GraspPlant {
             followed: [0.0; 3],
             held: 0.0,
             motor_torque: 0.0,
+            rubbed: 0.0,
             noise: rng,
             travel_error: 0.0,
             sensed: [0.0; 7],
@@ -145,7 +148,7 @@ impl GraspPlant {
         }
         self.followed = self.targets.palm;
         self.object = object;
-        (self.held, self.motor_torque, self.fault) = (0.0, 0.0, None);
+        (self.held, self.motor_torque, self.rubbed, self.fault) = (0.0, 0.0, 0.0, None);
         self.noise = Stream::seed_from_u64(rng.random());
         self.drawn = self.sensors.draw(progress, rng);
         let reading = self.look();
@@ -170,22 +173,28 @@ impl GraspPlant {
             object: off(3, self.object_position()),
             commanded: self.targets.travel + self.sensed[6],
             encoder: self.held + self.sensed[6],
-            torque: self.motor_torque * self.drawn.torque_gain,
+            target: self.targets.travel,
+            torque: (self.motor_torque + self.rubbed) * self.drawn.torque_gain,
         }
     }
 
-    /// Palm, object, bounding box, motor travel and torque, as the controller is told them.
+    /// Palm, object, bounding box, motor travel and torque, and the travel's target where it has a place, as the controller is
+    /// told them.
     pub(super) fn observe(&self, out: &mut [f64]) {
         let told = self.sensors.told();
         out[..3].copy_from_slice(&told.palm);
         out[3..6].copy_from_slice(&told.object);
         out[6..9].copy_from_slice(&self.object.bounding_box());
         out[9..11].copy_from_slice(&[told.travel, told.torque]);
+        if let Some(target) = out.get_mut(11) {
+            *target = told.target;
+        }
     }
 
-    /// The most that the tendons of this episode pull together, N.
+    /// The most that the tendons of this episode pull together, N: what the motor can do less what friction takes.
     fn limit(&self) -> f64 {
-        self.transmission.tension_limit * self.drawn.limit_gain
+        let most = self.transmission.tension_limit * self.drawn.limit_gain;
+        (most - self.drawn.friction / self.transmission.spool_radius).max(0.0)
     }
 
     /// How much of the tendon is wound beyond the slack, m.
@@ -290,6 +299,10 @@ impl Plant for GraspPlant {
             }
             Drive::Tendons(tendons) => self.step_tendons(tendons),
         };
+        if motor != 0.0 {
+            let winds = motor > 0.0 || self.wound() + self.drawn.slack > self.held;
+            self.rubbed = if winds { self.drawn.friction } else { -self.drawn.friction };
+        }
         self.fault = stepped.err();
         let reading = self.look();
         self.sensors.read(reading);

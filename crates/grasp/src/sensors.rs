@@ -15,6 +15,8 @@ pub(super) struct Reading {
     pub(super) commanded: f64,
     /// What is wound, m.
     pub(super) encoder: f64,
+    /// The same as the program knows it, without noise, m.
+    pub(super) target: f64,
     /// Of the motor, N·m.
     pub(super) torque: f64,
 }
@@ -30,6 +32,8 @@ pub(super) struct Told {
     pub(super) travel: f64,
     /// N·m.
     pub(super) torque: f64,
+    /// m.
+    pub(super) target: f64,
 }
 
 /// The bench of an episode.
@@ -45,11 +49,13 @@ pub(super) struct Drawn {
     pub(super) torque_gain: f64,
     /// The motor's limit as a multiple of what it should be.
     pub(super) limit_gain: f64,
+    /// Of motor and spool, N·m.
+    pub(super) friction: f64,
 }
 
 impl Default for Drawn {
     fn default() -> Self {
-        Self { delay: 0, behind: 0.0, slack: 0.0, torque_gain: 1.0, limit_gain: 1.0 }
+        Self { delay: 0, behind: 0.0, slack: 0.0, torque_gain: 1.0, limit_gain: 1.0, friction: 0.0 }
     }
 }
 
@@ -81,7 +87,8 @@ impl Sensors {
 
     /// Draws the bench of an episode at this fraction of training.
     pub(super) fn draw(&self, progress: f64, rng: &mut Stream) -> Drawn {
-        let Bench { delay, arm_lag, slack, torque_gain, limit_gain, growth: [from, to], .. } = &self.settings;
+        let Bench { delay, arm_lag, slack, torque_gain, limit_gain, motor_friction, growth: [from, to], .. } =
+            &self.settings;
         let grown = share_done(progress, *from, *to);
         let mut between = |[lo, hi]: &[f64; 2], none: f64| {
             let drawn = lo + (hi - lo) * rng.random::<f64>();
@@ -95,6 +102,7 @@ impl Sensors {
             slack: between(slack, 0.0),
             torque_gain: between(torque_gain, 1.0),
             limit_gain: between(limit_gain, 1.0),
+            friction: between(motor_friction, 0.0),
         }
     }
 
@@ -116,16 +124,17 @@ impl Sensors {
         self.told[self.newest] = self.tell(reading);
     }
 
-    fn tell(&mut self, Reading { palm, object, commanded, encoder, torque }: Reading) -> Told {
+    fn tell(&mut self, Reading { palm, object, commanded, encoder, target, torque }: Reading) -> Told {
         let place = self.object.place(palm, torque);
         Told {
             palm,
             object: if self.settings.object_sensed == ObjectSensed::Tracked { object } else { place },
             travel: match self.settings.travel_sensed {
                 TravelSensed::Commanded => commanded,
-                TravelSensed::Encoder => encoder,
+                TravelSensed::Encoder | TravelSensed::Both => encoder,
             },
             torque,
+            target,
         }
     }
 

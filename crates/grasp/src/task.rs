@@ -50,8 +50,8 @@ impl Task for GraspTask {
     type Plant = GraspPlant;
 
     fn spec(&self) -> EnvSpec {
-        let GraspSettings { hand, palm, palm_step, horizon, .. } = &self.settings;
-        env_spec(hand, *palm, *palm_step, *horizon)
+        let GraspSettings { hand, palm, bench, palm_step, horizon, .. } = &self.settings;
+        env_spec(hand, *palm, bench.travel_sensed, *palm_step, *horizon)
     }
 
     fn set_progress(&mut self, progress: f64) {

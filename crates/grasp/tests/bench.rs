@@ -85,6 +85,24 @@ fn the_encoder_is_held_back_by_the_motors_limit() {
     }
 }
 
+/// The target is told beside the encoder, and goes on where that is held back.
+#[test]
+fn the_target_goes_on_where_the_encoder_is_held_back() {
+    let bench = Bench { travel_sensed: TravelSensed::Both, ..Bench::default() };
+    let grasp = Grasp::new(silent(bench)).unwrap();
+    let (mut robot, law, mut seen) = (started(grasp.settings().clone(), 1.0), grasp.law(), [0.0; 12]);
+    assert_eq!(robot.spec().observation.last().unwrap().name, "motor_travel_target");
+    for t in 1..=220 {
+        let (mut state, mut effort, command) = ([0.0; 7], [0.0; 7], [0.0, 0.0002]);
+        robot.state(&mut state);
+        law.effort(&SEARCHED, &command, &state, &mut effort);
+        robot.step(&effort, &command);
+        robot.observe(&mut seen);
+        assert!((seen[11] - 0.0002 * f64::from(t)).abs() < 1e-12 && seen[9] < seen[11] + 1e-12, "step {t}: {seen:?}");
+    }
+    assert!(seen[9] < seen[11] - 0.005, "{seen:?}");
+}
+
 /// What is told late is what would have been told before; the start is told until then.
 #[test]
 fn delays_are_whole_steps() {
@@ -194,6 +212,44 @@ fn slack_and_a_real_limit_change_the_torques() {
             limited += usize::from(wanted[6] > 0.999 * 0.008 * 75.0 * gain);
         }
         assert!(limited > 10 && limited < 250, "slack {slack}, limit {gain}: {limited} steps at the limit");
+    }
+}
+
+/// Friction takes from what the tendons get, reads as torque while the spool winds, and the other way while it pays out.
+#[test]
+fn friction_is_felt_by_the_motor_and_not_by_the_tendons() {
+    let (friction, radius) = (0.04, GraspSettings::default().hand.transmission.spool_radius);
+    for native in [false, true] {
+        let grasp = |bench| {
+            let settings = silent(bench);
+            if native { Grasp::native(settings, &SEARCHED) } else { Grasp::new(settings) }.unwrap()
+        };
+        let encoder = Bench { travel_sensed: TravelSensed::Encoder, ..Bench::default() };
+        let rubbing = grasp(Bench { motor_friction: [friction; 2], ..encoder.clone() });
+        let weaker = grasp(Bench { limit_gain: [1.0 - friction / radius / 75.0; 2], ..encoder });
+        let mut limited = 0;
+        let law = rubbing.law();
+        let mut robots = [rubbing.robot(None), weaker.robot(None)];
+        for robot in &mut robots {
+            robot.set_design(&SEARCHED);
+            robot.reset(&mut rng(1));
+        }
+        for t in 0..500 {
+            let winds = t < 350;
+            let command = [0.0, if winds { 1.5e-4 } else { -1.5e-4 }];
+            for robot in &mut robots {
+                let (mut state, mut effort) = ([0.0; 7], [0.0; 7]);
+                robot.state(&mut state);
+                law.effort(&SEARCHED, &command, &state, &mut effort);
+                robot.step(&effort, &command);
+            }
+            let [torque, other] = robots.each_ref().map(|robot| seen(robot)[10]);
+            let back = robots[0].plant().travel() > seen(&robots[0])[9] + 1e-12;
+            let sign = if winds || back { 1.0 } else { -1.0 };
+            assert!((torque - other - sign * friction).abs() < 1e-12, "native {native}, step {t}: {torque}, {other}");
+            limited += usize::from(other > 0.999 * (radius * 75.0 - friction));
+        }
+        assert!((20..450).contains(&limited), "native {native}: {limited}");
     }
 }
 

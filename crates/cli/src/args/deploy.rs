@@ -29,6 +29,8 @@ pub(crate) enum DeployCommand {
     Calibrate(DeployCalibrateArgs),
     /// Run a run's controller on arm and hand, or with --dry-run on the emulated bench
     Run(DeployRunArgs),
+    /// Start the emulated bench, for the commands above to be tried on: it has a rig.toml of its own
+    Rehearse(DeployRehearseArgs),
     /// Hold a log against the simulation, step by step
     Replay(DeployReplayArgs),
     /// Fit friction, tendons, torque and delay to logs, and write the experiment with which to train on
@@ -159,7 +161,7 @@ pub(crate) struct DeployRunArgs {
     #[arg(long, value_name = "INDEX", requires = "dry_run", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=MOST_EPISODES))]
     pub(crate) first: u64,
     /// Make the emulated hand of a dry run differ from its description: `torque_gain`, `tendon_stiffness` (N/m), `friction` (N·m), `slack`
-    /// (m) or `delay` (s); may be repeated
+    /// (m), `delay` (s) or `zero` (rad); may be repeated
     #[arg(long = "plant", value_name = "NAME=NUMBER", requires = "dry_run")]
     pub(crate) plant: Vec<String>,
     /// Order a fault of the emulated arm or motor, 3 s after the first object is there: `motor heat 80`, `arm protective-stop`;
@@ -172,6 +174,32 @@ pub(crate) struct DeployRunArgs {
     /// The folder of logs [default: the rig's]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) log: Option<PathBuf>,
+}
+
+const ORDERS: &str = "\
+It runs until its input ends or Ctrl-C. What it takes, a line each:
+  object INDEX        put this held-out object there, as `hwasp eval` counts them; tells the command that grasps it
+  state               tell where everything is, JSON
+  fault arm TEXT, fault motor TEXT
+                      let something go wrong: `fault motor heat 80`, `fault arm protective-stop`
+  quit";
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = ORDERS)]
+pub(crate) struct DeployRehearseArgs {
+    /// The run folder of the hand
+    #[arg(value_parser = path())]
+    pub(crate) run: PathBuf,
+    /// The bench that is emulated: place, limits and speeds of this file [default: as `hwasp deploy init` writes it]
+    #[arg(long, value_name = "FILE", value_parser = path())]
+    pub(crate) rig: Option<PathBuf>,
+    /// The rig that reaches the emulated bench; removed at the end
+    #[arg(long, value_name = "FILE", default_value = "rehearsal.toml", value_parser = path())]
+    pub(crate) out: PathBuf,
+    /// Make the hand differ from its description: `torque_gain`, `tendon_stiffness` (N/m), `friction` (N·m), `slack` (m), `delay` (s) or
+    /// `zero` (rad); may be repeated
+    #[arg(long = "plant", value_name = "NAME=NUMBER")]
+    pub(crate) plant: Vec<String>,
 }
 
 #[derive(Debug, clap::Args)]

@@ -52,7 +52,7 @@ impl Training {
         let settings = spec.task.settings::<GraspTaskSettings>().ok_or_else(no_hand)?;
         let bench = &settings.bench;
         Ok(Self {
-            encoder: bench.travel_sensed == TravelSensed::Encoder,
+            encoder: bench.travel_sensed != TravelSensed::Commanded,
             felt: if bench.object_sensed == ObjectSensed::Tracked { FELT } else { bench.grasp_felt },
             from_palm: settings.viewpoint == Viewpoint::Palm,
             height: settings.height,

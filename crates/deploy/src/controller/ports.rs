@@ -18,6 +18,8 @@ pub struct Sensed {
     pub travel: f64,
     /// The motor's torque.
     pub torque: f64,
+    /// What the motor is to have wound.
+    pub travel_target: f64,
 }
 
 /// A number of it.
@@ -33,6 +35,8 @@ pub enum Sensor {
     Travel,
     /// The motor's torque.
     Torque,
+    /// What is to be wound.
+    TravelTarget,
 }
 
 impl Sensor {
@@ -45,6 +49,7 @@ impl Sensor {
             Self::Size(axis) => sensed.size[axis],
             Self::Travel => sensed.travel,
             Self::Torque => sensed.torque,
+            Self::TravelTarget => sensed.travel_target,
         }
     }
 
@@ -53,6 +58,7 @@ impl Sensor {
         match name {
             "motor_travel" => Some(Self::Travel),
             "motor_torque" => Some(Self::Torque),
+            "motor_travel_target" => Some(Self::TravelTarget),
             _ => axis("palm_")
                 .map(Self::Palm)
                 .or_else(|| axis("object_").map(Self::Object))

@@ -141,9 +141,14 @@ impl Motion for Grasp<'_, '_> {
     }
 
     fn step(&mut self, senses: &Senses, targets: &mut Targets, _: &Manner) -> Progress {
-        let travel = if self.encoder { senses.wound } else { targets.travel };
-        let sensed = Sensed { palm: senses.palm, object: self.place.0, size: self.size, travel, torque: senses.torque };
-        self.controller.act(&sensed);
+        self.controller.act(&Sensed {
+            palm: senses.palm,
+            object: self.place.0,
+            size: self.size,
+            travel: if self.encoder { senses.wound } else { targets.travel },
+            torque: senses.torque,
+            travel_target: targets.travel,
+        });
         if !self.controller.observation().iter().all(|x| x.is_finite()) {
             return Progress::NotFinite { controller: false };
         }

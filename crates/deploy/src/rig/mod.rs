@@ -20,7 +20,7 @@ pub use frame::Frame;
 pub use limits::LimitSettings;
 pub use motor::{MotorSettings, Winding};
 pub use object::{LogSettings, ObjectSettings};
-pub use template::template;
+pub use template::{template, text_of};
 
 use crate::error::DeployError;
 

@@ -8,10 +8,14 @@ use super::{Rig, SECTIONS};
 
 /// A `rig.toml` with every key, its default, its limits and what it means.
 pub fn template() -> String {
-    let mut text = "# The bench for `hwasp deploy`. Every key has its default; quantities name their units.\n\
-                    # What to measure and to wire stands in docs/deploy.md.\n"
-        .to_owned();
-    let mut rig = Rig::default();
+    let about = "# The bench for `hwasp deploy`. Every key has its default; quantities name their units.\n\
+                 # What to measure and to wire stands in docs/deploy.md.\n";
+    text_of(&Rig::default(), about)
+}
+
+/// A rig as such a file, beginning with these lines.
+pub fn text_of(rig: &Rig, about: &str) -> String {
+    let (mut rig, mut text) = (rig.clone(), about.to_owned());
     for ((name, settings), (_, about)) in rig.sections().into_iter().zip(SECTIONS) {
         let _ = write!(text, "\n# {}.\n[{name}]\n", capital(about));
         let fields = described(settings);

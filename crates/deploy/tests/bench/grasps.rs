@@ -34,6 +34,7 @@ fn it_says_what_the_exported_controller_says() {
             size: [0.06, 0.05, 0.08],
             travel: 0.012,
             torque: 0.2,
+            travel_target: 0.014,
         };
         controller.act(&sensed);
         let seen: Vec<f32> = controller.observation().iter().map(|&x| x as f32).collect();

@@ -27,6 +27,7 @@ use hwasp_drivers::Pose;
 use serde_json::{Value, json};
 
 pub use settings::{BenchError, BenchSettings, HandSettings};
+pub use tell::object as object_text;
 
 use crate::dynamixel::DynamixelEmulator;
 use crate::hand::HandWorld;

@@ -5,7 +5,7 @@ use std::net::{IpAddr, Ipv4Addr};
 use hwasp_drivers::Pose;
 use hwasp_grasp::GraspSettings;
 use hwasp_tasks::hand::DESIGN_LEN;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{Bench, BenchWorld};
@@ -36,7 +36,7 @@ pub enum BenchError {
 }
 
 /// A bench, as JSON has it.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BenchSettings {
     /// `cb3`, `e-series`, or nothing.
@@ -58,7 +58,7 @@ impl Default for BenchSettings {
 }
 
 /// A hand and how it is mounted, as JSON has it. What a field means: [`HandWorldSettings`] and [`Planted`].
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the fields are those of the types that the line above names")]
 pub struct HandSettings {

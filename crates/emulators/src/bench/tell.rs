@@ -53,8 +53,8 @@ impl ObjectText {
     }
 }
 
-/// An object, with the fields that an order may have.
-pub(super) fn object(object: &Object) -> Value {
+/// An object, with the fields that an order may have: what `object` puts onto a bench.
+pub fn object(object: &Object) -> Value {
     let Object { kind, size, mass, inertia, friction, place, yaw, lying } = object.clone();
     json!({
         "kind": kind.name(), "size": size, "mass": mass, "inertia": inertia, "friction": friction, "place": place,

@@ -10,6 +10,9 @@ choice! {
         Commanded = "commanded",
         /// Where the spool is: it stands still while the motor's limit does not let it wind.
         Encoder = "encoder",
+        /// Where the spool is, and as `motor_travel_target` also the sum of what was commanded: what both differ by tells that
+        /// the motor is at its limit, whatever its torque reads.
+        Both = "both",
     }
 }
 
@@ -28,7 +31,7 @@ choice! {
 /// Each span is drawn from once an episode; where both its ends are the same, nothing varies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bench {
-    /// What `motor_travel` tells.
+    /// What `motor_travel` tells, and whether there is a `motor_travel_target`.
     pub travel_sensed: TravelSensed,
     /// What `object_x`, `object_y` and `object_z` tell.
     pub object_sensed: ObjectSensed,
@@ -46,6 +49,8 @@ pub struct Bench {
     pub torque_gain: [f64; 2],
     /// The motor's real limit, as a multiple of what it should be.
     pub limit_gain: [f64; 2],
+    /// Of motor and spool, N·m: winding takes so much more, of which the tendons feel nothing.
+    pub motor_friction: [f64; 2],
     /// Between which fractions of training the spans grow from nothing to all of it.
     pub growth: [f64; 2],
 }
@@ -63,6 +68,7 @@ impl Default for Bench {
             slack: [0.0; 2],
             torque_gain: [1.0; 2],
             limit_gain: [1.0; 2],
+            motor_friction: [0.0; 2],
             growth: [0.0; 2],
         }
     }
@@ -71,7 +77,7 @@ impl Default for Bench {
 impl Bench {
     pub(super) fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         let about = "what is told of the motor's travel: the sum that was `commanded`, as in the paper, or the `encoder` of the spool, \
-                     which the motor's limit holds back";
+                     which the motor's limit holds back; `both`: the encoder, and the sum as `motor_travel_target`";
         fields.choice("travel_sensed", &mut self.travel_sensed, about);
         let about = "what is told of the object's place: `tracked` all the time; `carried`: told at the start, and with the palm \
                      once the grasp is felt; `fixed`: told at the start";
@@ -91,7 +97,10 @@ impl Bench {
         fields.span("torque_gain", &mut self.torque_gain, Dimension::None, 0.1..=10.0, about);
         let about = "the motor's limit as a multiple of what it should be, drawn once an episode";
         fields.span("limit_gain", &mut self.limit_gain, Dimension::None, 0.1..=10.0, about);
-        let about = "between which fractions of training delay, arm_lag, slack and both gains grow from nothing to what is drawn: a \
+        let about =
+            "friction of motor and spool: what winding takes more and the tendons do not feel, drawn once an episode";
+        fields.span("motor_friction", &mut self.motor_friction, Dimension::Torque, 0.0..=1.0, about);
+        let about = "between which fractions of training delay, arm_lag, slack, friction and both gains grow from nothing to what is drawn: a \
                      curriculum";
         fields.fractions("bench_growth", &mut self.growth, about);
     }

@@ -2,16 +2,25 @@
 
 use hwasp_core::{CommandPort, Dimension, EnvSpec, Port};
 
-use super::ShapeKind;
+use super::{ShapeKind, TravelSensed};
 use crate::hand::{HandDescription, PalmMotion, names};
 
 /// Ports, horizon and time step of a hand whose palm moves by up to `palm_step`, m, in a step.
-pub fn env_spec(hand: &HandDescription, palm: PalmMotion, palm_step: f64, horizon: usize) -> EnvSpec {
+pub fn env_spec(
+    hand: &HandDescription,
+    palm: PalmMotion,
+    travel: TravelSensed,
+    palm_step: f64,
+    horizon: usize,
+) -> EnvSpec {
     let port = |name: &str, dimension| Port { name: name.to_owned(), dimension };
     let lengths = ["palm_x", "palm_y", "palm_z", "object_x", "object_y", "object_z", "size_x", "size_y", "size_z"];
     let mut observation: Vec<Port> = lengths.iter().map(|name| port(name, Dimension::Length)).collect();
     observation.push(port("motor_travel", Dimension::Length));
     observation.push(port("motor_torque", Dimension::Torque));
+    if travel == TravelSensed::Both {
+        observation.push(port("motor_travel_target", Dimension::Length));
+    }
     let mut state = vec![port("motor_travel", Dimension::Length)];
     state.extend(names::JOINTS.iter().map(|joint| port(&format!("{joint}_angle"), Dimension::Angle)));
     let mut effort: Vec<Port> =

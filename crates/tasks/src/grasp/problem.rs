@@ -48,7 +48,8 @@ impl GraspProblem {
 /// The physics of a scene, once they are asked for.
 fn world(problem: GraspProblem, law: &Law, task: &GraspTaskSettings, scene: Scene) -> World {
     let name = Problem::name(&problem).to_owned();
-    let (task, env) = (task.clone(), env_spec(&task.hand(), problem.palm, PALM_STEP, HORIZON));
+    let (task, env) =
+        (task.clone(), env_spec(&task.hand(), problem.palm, task.bench.travel_sensed, PALM_STEP, HORIZON));
     World::later(law.clone(), env, move || {
         match problem.engine {
         Some(engine) => engine(&task, scene),
@@ -122,7 +123,7 @@ fn words(task: &GraspTaskSettings) -> Words {
     };
     let wound = match task.bench.travel_sensed {
         TravelSensed::Commanded => "tendon wound so far, the sum of the commands",
-        TravelSensed::Encoder => "tendon on the spool, by the motor's encoder",
+        TravelSensed::Encoder | TravelSensed::Both => "tendon on the spool, by the motor's encoder",
     };
     let axes = |name: &str, meaning: &'static str| ["x", "y", "z"].map(|axis| (format!("{name}_{axis}"), meaning));
     let mut seen = Vec::new();
@@ -131,6 +132,9 @@ fn words(task: &GraspTaskSettings) -> Words {
     seen.extend(axes("size", "the object's bounding box as it lies at the start"));
     seen.push(("motor_travel".to_owned(), wound));
     seen.push(("motor_torque".to_owned(), "torque of the motor in the last period"));
+    if task.bench.travel_sensed == TravelSensed::Both {
+        seen.push(("motor_travel_target".to_owned(), "tendon to be on the spool, the sum of the commands"));
+    }
     let of_joints = |what: &str, meaning: &'static str| names::JOINTS.map(|joint| (format!("{joint}_{what}"), meaning));
     let mut read = vec![("motor_travel".to_owned(), "tendon wound so far")];
     read.extend(of_joints("angle", "angle of the joint, 0 open, closing"));

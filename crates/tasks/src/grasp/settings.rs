@@ -77,6 +77,8 @@ pub struct GraspTaskSettings {
     pub range: HandRangeKind,
     /// The most the three tendons pull together, N.
     pub tension_limit: f64,
+    /// Of each tendon, N/m.
+    pub tendon_stiffness: f64,
     /// What the springs have to spare at every pose, palm down, N·m; none where hands may droop.
     pub opening_margin: Option<f64>,
     /// Shapes of objects.
@@ -134,6 +136,7 @@ impl GraspTaskSettings {
             palm,
             range: HandRangeKind::Large,
             tension_limit: 75.0,
+            tendon_stiffness: HandDescription::default().transmission.tendon_stiffness,
             opening_margin: None,
             shapes: ShapeKind::EACH.to_vec(),
             size: [0.040, 0.100],
@@ -165,6 +168,7 @@ impl GraspTaskSettings {
     pub fn hand(&self) -> HandDescription {
         let mut hand = HandDescription::default();
         hand.transmission.tension_limit = self.tension_limit;
+        hand.transmission.tendon_stiffness = self.tendon_stiffness;
         hand
     }
 
@@ -181,6 +185,8 @@ impl Settings for GraspTaskSettings {
         fields.choice("range", &mut self.range, "limits of the twelve parameters");
         let about = "the most the three tendons pull together; 163 N is the easy variant";
         fields.quantity("tension_limit", &mut self.tension_limit, Dimension::Force, 1.0..=1000.0, about);
+        let about = "of each of the three tendons";
+        fields.quantity("tendon_stiffness", &mut self.tendon_stiffness, Dimension::Stiffness, 100.0..=1e6, about);
         let about = "torque that the springs have to spare at every pose with the palm down; preloads and stiffnesses that are too \
                      small for it are built as those that suffice";
         let example = (Dimension::Torque, 1e-3);

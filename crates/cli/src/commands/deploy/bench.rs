@@ -1,9 +1,13 @@
-//! `hwasp deploy bench`, the process behind a dry run.
+//! The emulated bench: the process `hwasp deploy bench`, and how it is started.
 
 use std::io::{self, BufReader};
 use std::path::Path;
 
+use hwasp_deploy::dry::BenchProcess;
+use hwasp_deploy::rig::Rig;
 use hwasp_emulators::bench::{BenchSettings, run_bench};
+use hwasp_emulators::hand::Planted;
+use hwasp_export::Deployed;
 
 use crate::failure::{Failure, OTHER_FILE};
 
@@ -13,4 +17,39 @@ pub(crate) fn run(settings: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(settings).map_err(|error| Failure::from(error).hint(OTHER_FILE))?;
     let bench = BenchSettings::from_json(&text).and_then(|settings| settings.start()).map_err(Failure::input)?;
     Ok(run_bench(bench, BufReader::new(io::stdin()), &mut io::stdout())?)
+}
+
+/// Starts it with the hand of a run, which differs by what is planted: the process, and the rig that reaches it.
+pub(super) fn start(deployed: &Deployed, rig: &Rig, plant: &[String]) -> Result<(BenchProcess, Rig), Failure> {
+    let mut command = std::process::Command::new(std::env::current_exe()?);
+    command.args(["deploy", "bench"]);
+    let settings = std::env::temp_dir().join(format!("hwasp-bench-{}.json", std::process::id()));
+    let started = BenchProcess::start(command, &settings, deployed, rig, &planted(plant)?);
+    // It was read when the bench said that it is ready, or will never be.
+    let _ = std::fs::remove_file(&settings);
+    Ok(started?)
+}
+
+/// What the emulated hand differs by.
+fn planted(plant: &[String]) -> Result<Planted, Failure> {
+    let mut planted = Planted::default();
+    for text in plant {
+        let wrong = || {
+            Failure::input(format!(
+                "--plant {text}: write NAME=NUMBER with torque_gain, tendon_stiffness, friction, slack, delay or zero"
+            ))
+        };
+        let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
+        match name.trim() {
+            "torque_gain" => planted.torque_gain = value,
+            "tendon_stiffness" => planted.tendon_stiffness = Some(value),
+            "friction" => planted.friction = value,
+            "slack" => planted.slack = value,
+            "delay" => planted.delay = value,
+            "zero" => planted.zero = value,
+            _ => return Err(wrong()),
+        }
+    }
+    Ok(planted)
 }

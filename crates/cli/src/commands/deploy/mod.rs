@@ -8,6 +8,8 @@ mod check;
 mod identify;
 mod init;
 #[cfg(feature = "mujoco")]
+mod rehearse;
+#[cfg(feature = "mujoco")]
 mod replay;
 mod run;
 mod trials;
@@ -37,11 +39,13 @@ pub(crate) fn run(args: &DeployArgs, catalogue: &Catalogue) -> Result<(), Failur
         #[cfg(not(feature = "mujoco"))]
         DeployCommand::Bench { .. } => Err(no_engine()),
         #[cfg(feature = "mujoco")]
+        DeployCommand::Rehearse(args) => rehearse::run(args, catalogue),
+        #[cfg(feature = "mujoco")]
         DeployCommand::Replay(args) => replay::run(args, catalogue),
         #[cfg(feature = "mujoco")]
         DeployCommand::Identify(args) => identify::run(args, catalogue),
         #[cfg(not(feature = "mujoco"))]
-        DeployCommand::Replay(_) | DeployCommand::Identify(_) => Err(no_engine()),
+        DeployCommand::Rehearse(_) | DeployCommand::Replay(_) | DeployCommand::Identify(_) => Err(no_engine()),
     }
 }
 

@@ -234,19 +234,12 @@ fn dry(_: &DeployRunArgs, _: &Deployed, _: &AtomicU32) -> Result<(), Failure> {
 /// The rates of a dry run.
 #[cfg(feature = "mujoco")]
 fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Result<(), Failure> {
-    use hwasp_deploy::dry::{BenchProcess, DryStage, HeldOut};
+    use hwasp_deploy::dry::{DryStage, HeldOut};
     use hwasp_deploy::trials::rates;
 
     let rig = if args.rig.rig.exists() { rig(&args.rig)? } else { Rig::default() };
     let held_out = HeldOut::new(deployed, args.seed).map_err(Failure::input)?;
-    let mut command = std::process::Command::new(std::env::current_exe()?);
-    command.args(["deploy", "bench"]);
-    let settings = std::env::temp_dir().join(format!("hwasp-bench-{}.json", std::process::id()));
-    let planted = planted(&args.plant)?;
-    let started = BenchProcess::start(command, &settings, deployed, &rig, &planted);
-    // It was read when the bench said that it is ready, or will never be.
-    let _ = std::fs::remove_file(&settings);
-    let (bench, mut rig) = started?;
+    let (bench, mut rig) = super::bench::start(deployed, &rig, &args.plant)?;
     // Nobody stands before an emulated hand: it is freed at once.
     rig.limits.hold = rig.limits.hold.min(1.0);
     let calibration = Calibration::ideal(&rig, deployed.design());
@@ -267,28 +260,4 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
         super::trials::table(&rates(&trials))
     ))?;
     ended(&episodes)
-}
-
-/// What the emulated hand differs by.
-#[cfg(feature = "mujoco")]
-fn planted(plant: &[String]) -> Result<hwasp_emulators::hand::Planted, Failure> {
-    let mut planted = hwasp_emulators::hand::Planted::default();
-    for text in plant {
-        let wrong = || {
-            Failure::input(format!(
-                "--plant {text}: write NAME=NUMBER with torque_gain, tendon_stiffness, friction, slack or delay"
-            ))
-        };
-        let (name, value) = text.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
-        match name.trim() {
-            "torque_gain" => planted.torque_gain = value,
-            "tendon_stiffness" => planted.tendon_stiffness = Some(value),
-            "friction" => planted.friction = value,
-            "slack" => planted.slack = value,
-            "delay" => planted.delay = value,
-            _ => return Err(wrong()),
-        }
-    }
-    Ok(planted)
 }

@@ -35,14 +35,17 @@ mod tests {
     use hwasp_problem::Told;
 
     use super::*;
-    use crate::grasp::{ObjectSensed, env_spec};
+    use crate::grasp::{ObjectSensed, TravelSensed, env_spec};
     use crate::hand::PalmMotion;
 
     #[test]
     fn every_port_is_told_and_every_frame_is_there() {
-        for palm in [PalmMotion::Vertical, PalmMotion::Spatial] {
-            let task = GraspTaskSettings::new(palm);
-            let (manual, env) = (manual(&task), env_spec(&task.hand(), palm, 0.002, 500));
+        for (palm, travel) in
+            [(PalmMotion::Vertical, TravelSensed::Both), (PalmMotion::Spatial, TravelSensed::Commanded)]
+        {
+            let mut task = GraspTaskSettings::new(palm);
+            task.bench.travel_sensed = travel;
+            let (manual, env) = (manual(&task), env_spec(&task.hand(), palm, travel, 0.002, 500));
             let sensors: Vec<&str> = manual.sensors.iter().map(|sensor| &*sensor.port).collect();
             let motors: Vec<&str> = manual.motors.iter().map(|motor| &*motor.port).collect();
             assert_eq!(sensors, env.observation.iter().map(|port| &*port.name).collect::<Vec<_>>());

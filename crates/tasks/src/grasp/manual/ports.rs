@@ -45,14 +45,18 @@ pub(super) fn sensors(task: &GraspTaskSettings) -> Vec<Sensor> {
     sensors.extend(three("palm", WORLD, end, task.position_noise));
     sensors.extend(three("object", place, &read, task.position_noise));
     sensors.extend(three("size", OBJECT, "once, before the start", 0.0));
+    let sum = "after the commands of the period before were added up; 0 before the first one";
     let travel = match task.bench.travel_sensed {
-        TravelSensed::Commanded => "after the commands of the period before were added up; 0 before the first one",
-        TravelSensed::Encoder => end,
+        TravelSensed::Commanded => sum,
+        TravelSensed::Encoder | TravelSensed::Both => end,
     };
     sensors.push(motor("travel", travel, task.travel_noise));
     let torque =
         "in the last simulation step of the period before (a motor: at the period's end); 0 before the first command";
     sensors.push(motor("torque", torque, 0.0));
+    if task.bench.travel_sensed == TravelSensed::Both {
+        sensors.push(motor("travel_target", sum, 0.0));
+    }
     sensors
 }
 

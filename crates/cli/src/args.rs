@@ -218,6 +218,10 @@ pub(crate) struct TrainArgs {
     /// The run folder [default: a new one under runs/]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
+    /// Begin with what another run learned: weights by the names of what is seen and commanded, the design by the names of its
+    /// parameters. Values and schedules are those of the experiment
+    #[arg(long, value_name = "RUN", conflicts_with = "resume", value_parser = path())]
+    pub(crate) from: Option<PathBuf>,
     /// Go on with a training that was interrupted, from its newest checkpoint: the result has the same bits
     #[arg(long, value_name = "RUN", conflicts_with_all = ["experiment", "method", "set", "seed", "env_steps", "out"], value_parser = path())]
     pub(crate) resume: Option<PathBuf>,

@@ -19,6 +19,7 @@ use hwasp_training::{Checkpoint, Evaluation, MeanInterval};
 pub(crate) fn beginning(spec: &Experiment, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
     let steps = grouped(spec.train.env_steps);
     let (verb, steps) = match from {
+        Some(_) if !resumed => ("training", format!("further for {steps}")),
         Some(from) => ("resuming", format!("after {} of {steps}", grouped(from.env_steps))),
         None if resumed => ("resuming", format!("from the beginning (it has no checkpoint yet) for {steps}")),
         None => ("training", format!("for {steps}")),

@@ -25,6 +25,7 @@ mod search;
 pub mod stats;
 mod train;
 mod trial;
+mod warm_start;
 mod worker;
 
 pub use assemble::{AssembleError, Assembly, Piece};
@@ -42,4 +43,5 @@ pub use paired::{Change, Reference};
 pub use polish::{params_at, stage_at};
 pub use train::{STILL, Trained, beginning, moved, repeat, train, train_by, train_from};
 pub use trial::{AT_ONCE, Trial};
+pub use warm_start::{WarmStartError, warm_start};
 pub use worker::{LocalCollector, Worker};

@@ -6,8 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
 use hwasp_plot::curves_svg;
-use hwasp_runs::{Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
-use hwasp_training::{Assembly, Checkpoint, Observer, ObserverError, STILL, TrainError, Trained, moved, train_from};
+use hwasp_runs::{Found, Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
+use hwasp_training::{
+    Assembly, Checkpoint, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_from, warm_start,
+};
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
 use crate::args::TrainArgs;
@@ -78,11 +80,33 @@ fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed),
     further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
     let name = args.experiment.as_deref().unwrap_or_default();
     let (spec, assembly) = experiment(name, &args.settings, &further, catalogue)?;
+    let start = args.from.as_deref().map(|run| learned_before(run, &assembly, catalogue)).transpose()?;
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
     let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
-    let folder = RunFolder::create(&path, &spec, &provenance, keeping(args)).map_err(Failure::input)?;
-    Ok((assembly, folder.into()))
+    let mut folder = RunFolder::create(&path, &spec, &provenance, keeping(args)).map_err(Failure::input)?;
+    if let Some(start) = &start {
+        // No experiment file says it: from the first moment on it is in the folder.
+        folder.keep(start)?;
+    }
+    Ok((assembly, Resumed { folder, found: Found { checkpoint: start, ..Found::default() } }))
+}
+
+/// The beginning of a training that another run learned before.
+fn learned_before(run: &Path, assembly: &Assembly, catalogue: &Catalogue) -> Result<Checkpoint, Failure> {
+    let method = assembly.experiment().method;
+    if method.searches() {
+        let name = method.name();
+        return Err(Failure::input(format!(
+            "--from: {name} begins its search anew; hwasp, minimal, episode and fixed can go on"
+        )));
+    }
+    let saved = saved_run(run_folder(run)?, &[], catalogue)?;
+    let main = assembly.main_stage();
+    let params =
+        warm_start(&main, saved.assembly(), &saved.params().map_err(Failure::input)?).map_err(Failure::input)?;
+    let steps = saved.assembly().experiment().train.env_steps;
+    Ok(beginning(&main, params, steps)?)
 }
 
 /// A run that was interrupted.

@@ -61,22 +61,18 @@ fn the_controller_does_what_it_did() {
 /// Running statistics begin with the other one's, and a design within the limits.
 #[test]
 fn statistics_and_design_are_taken_along() {
-    let normalized = |seed| {
-        let settings = [
-            ("controller.observation_center", "[0.0]"),
-            ("controller.observation_scale", "[1.0]"),
-            ("controller.normalize_observations", "true"),
-            ("seed", seed),
-        ];
-        Assembly::new(&small("hwasp", &settings)).unwrap()
-    };
-    let other = normalized("1");
+    const NORMALIZED: &[(&str, &str)] = &[
+        ("controller.observation_center", "[0.0]"),
+        ("controller.observation_scale", "[1.0]"),
+        ("controller.normalize_observations", "true"),
+    ];
+    let other = Assembly::new(&small("hwasp", NORMALIZED)).unwrap();
     let mut params = other.init();
     let at = other.policy.normalizer_params();
     params[at.clone()].copy_from_slice(&[0.3, 0.7]);
     let design = other.policy.design_params();
     params[design.clone()][0] = 30.0; // at its upper limit
-    let assembly = normalized("9");
+    let assembly = Assembly::new(&small("hwasp", NORMALIZED)).unwrap();
     let start = warm_start(&assembly, &other, &params).unwrap();
     assert_eq!(start[at], [0.3, 0.7]);
     assert!((4.0..10.0).contains(&start[design][0]), "no way back from the limit");

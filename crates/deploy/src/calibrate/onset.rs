@@ -62,9 +62,7 @@ pub struct Onset {
 
 /// The least rise of the current that counts, A: eight steps of its sensor.
 const RISE: f64 = 0.02;
-/// How far behind the rise the line goes that leads back to the onset, m.
-const LINE: f64 = 4e-4;
-/// The fewest samples of a line.
+/// The fewest samples of a line, and that have to have risen.
 const FEWEST: usize = 5;
 
 /// Finds the onset in samples of a slow winding, m and A.
@@ -98,16 +96,28 @@ pub fn onset(samples: &[(f64, f64)]) -> Result<Onset, DeployError> {
             "see that [motor] winding is right, and that the hand opens freely",
         );
     }
-    let from = samples[first].0;
-    let line: Vec<_> = samples[first..].iter().take_while(|(wound, _)| wound - from <= LINE).copied().collect();
-    let line = if line.len() < FEWEST { &samples[first..first + FEWEST] } else { &line[..] };
-    let n = line.len() as f64;
-    let (mx, my) = (line.iter().map(|p| p.0).sum::<f64>() / n, line.iter().map(|p| p.1).sum::<f64>() / n);
-    let sxx: f64 = line.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    let slope = line.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / sxx;
-    // A line that does not rise leads nowhere: the rise itself is the best there is.
-    let at = if slope > 0.0 && sxx > 0.0 { mx - (my - before) / slope } else { from };
-    Ok(Onset { at: at.clamp(from - 2.0 * LINE, from), before })
+    let at = samples[begin + split(&samples[begin..(first + FEWEST).min(samples.len())])].0;
+    Ok(Onset { at, before })
+}
+
+/// Where samples that were flat begin to be on another line: the split that leaves the least squares. Weak springs give way at once, so
+/// that the first rise is small and the next one slow; all samples on both sides together tell where it is.
+fn split(samples: &[(f64, f64)]) -> usize {
+    let left = |part: &[(f64, f64)]| {
+        let mean = part.iter().map(|p| p.1).sum::<f64>() / part.len() as f64;
+        part.iter().map(|p| (p.1 - mean).powi(2)).sum::<f64>()
+    };
+    let right = |part: &[(f64, f64)]| {
+        let n = part.len() as f64;
+        let (mx, my) = (part.iter().map(|p| p.0).sum::<f64>() / n, part.iter().map(|p| p.1).sum::<f64>() / n);
+        let sxx: f64 = part.iter().map(|p| (p.0 - mx).powi(2)).sum();
+        let sxy: f64 = part.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
+        let slope = if sxx > 0.0 { sxy / sxx } else { 0.0 };
+        part.iter().map(|p| (p.1 - my - slope * (p.0 - mx)).powi(2)).sum::<f64>()
+    };
+    let rest = |i: usize| left(&samples[..i]) + right(&samples[i..]);
+    let splits = FEWEST..samples.len().saturating_sub(FEWEST).max(FEWEST + 1);
+    splits.map(|i| (i, rest(i))).min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
 }
 
 /// The middle of some numbers; not a number where there are none.
@@ -185,6 +195,27 @@ mod tests {
             let found = onset(&winding(at, friction, noise)).unwrap();
             assert!((found.at - at).abs() < 1e-4, "{found:?}, not {at} m");
             assert!((found.before - friction).abs() < 0.003, "{found:?}");
+        }
+    }
+
+    /// Springs that hardly hold the digits open: 5 mA at once, and 1 mA more with each mm, read in ticks of 2.69 mA.
+    #[test]
+    fn the_onset_of_weak_springs_is_found_too() {
+        for at in [0.0081, 0.0113, 0.0135] {
+            let samples: Vec<_> = (0..900)
+                .map(|i| {
+                    let wound = SLOWLY * f64::from(i);
+                    let stretched = (wound - at).max(0.0);
+                    let limit = (stretched - 0.015).max(0.0) * 92.0;
+                    let current = 0.011
+                        + (stretched * 92.0).min(0.005 + stretched)
+                        + limit
+                        + 0.001 * f64::sin(12.9898 * f64::from(i));
+                    (wound, 0.00269 * (current / 0.00269).round())
+                })
+                .collect();
+            let found = onset(&samples).unwrap();
+            assert!((found.at - at).abs() < 2e-4, "{found:?}, not {at} m");
         }
     }
 

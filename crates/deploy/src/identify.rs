@@ -170,48 +170,32 @@ fn mean_square(pairs: &[Pair], of: impl Fn(&Pair) -> [f64; 2]) -> f64 {
 /// How far what was fitted is varied in training, as a share.
 const SPREAD: f64 = 0.1;
 
-/// The experiment of a run with what was identified, TOML, and the keys that it has no place for.
+/// The experiment of a run with what was identified, TOML: to be trained further, so all schedules are at their end.
 ///
 /// # Errors
 /// Where the experiment cannot be written.
-pub fn experiment(
-    deployed: &Deployed,
-    found: &Identified,
-    calibrated: f64,
-) -> Result<(String, Vec<&'static str>), DeployError> {
+pub fn experiment(deployed: &Deployed, found: &Identified, calibrated: f64) -> Result<String, DeployError> {
     let unwritten = |what: String| DeployError::Fit { what, hint: "see that experiment.toml of the run is whole" };
     let text = deployed.spec().to_toml().map_err(|error| unwritten(error.to_string()))?;
     let mut table: toml::Table = text.parse().map_err(|error: toml::de::Error| unwritten(error.to_string()))?;
-    let mut homeless = Vec::new();
-    let Some(task) = table.get_mut("task").and_then(toml::Value::as_table_mut) else {
-        return Err(unwritten("it has no [task]".to_owned()));
-    };
     // A reading is off by what the calibration did not know, and the motor's limit the other way.
     let reads = calibrated / found.torque_gain;
     let span = |value: f64| [value * (1.0 - SPREAD), value * (1.0 + SPREAD)];
     let plain = |value: f64| toml::Value::Array(span(value).map(toml::Value::Float).to_vec());
-    let quantity = |value: f64, unit: &str| {
-        toml::Value::Array(span(value).map(|x| toml::Value::String(format!("{x:.5} {unit}"))).to_vec())
-    };
-    for (key, value) in [
-        ("torque_gain", plain(reads)),
-        ("limit_gain", plain(1.0 / reads)),
-        ("delay", quantity(found.delay, "s")),
-        ("slack", quantity(found.slack, "m")),
-        ("tendon_stiffness", quantity(found.tendon_stiffness, "N/m")),
-        ("motor_friction", quantity(found.friction, "N·m")),
+    let text = |value: f64, unit: &str| toml::Value::String(format!("{value:.5} {unit}"));
+    let quantity = |value: f64, unit: &str| toml::Value::Array(span(value).map(|x| text(x, unit)).to_vec());
+    for (section, key, value) in [
+        ("task", "torque_gain", plain(reads)),
+        ("task", "limit_gain", plain(1.0 / reads)),
+        ("task", "delay", quantity(found.delay, "s")),
+        ("task", "slack", quantity(found.slack, "m")),
+        ("task", "motor_friction", quantity(found.friction, "N*m")),
+        ("task", "tendon_stiffness", text(found.tendon_stiffness, "N/m")),
+        ("train", "progress_start", toml::Value::Float(1.0)),
     ] {
-        if task.contains_key(key) {
-            task.insert(key.to_owned(), value);
-        } else {
-            homeless.push(key);
-        }
+        let table = table.get_mut(section).and_then(toml::Value::as_table_mut);
+        table.ok_or_else(|| unwritten(format!("it has no [{section}]")))?.insert(key.to_owned(), value);
     }
     let written = toml::to_string(&table).map_err(|error| unwritten(error.to_string()))?;
-    Ok((
-        format!(
-            "# The run's experiment, with what `hwasp deploy identify` found in logs of the built hand.\n{written}"
-        ),
-        homeless,
-    ))
+    Ok(format!("# The run's experiment, with what `hwasp deploy identify` found in logs of the built hand.\n{written}"))
 }

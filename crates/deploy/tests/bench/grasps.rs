@@ -14,7 +14,7 @@ use hwasp_tasks::grasp::CarriedObject;
 
 use super::doubles::{FakeArm, FakeMotor, Fault, Kept, VirtualClock, world};
 
-fn deployed(run: &str) -> Deployed {
+pub(crate) fn deployed(run: &str) -> Deployed {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results").join(run);
     Deployed::open(&path, &hwasp_builtin::catalogue()).unwrap()
 }

@@ -5,4 +5,5 @@
 mod doubles;
 mod faults;
 mod grasps;
+mod identified;
 mod logs;

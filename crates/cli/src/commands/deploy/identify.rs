@@ -31,7 +31,7 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
     // What the logs were calibrated with, as a multiple of the data sheet's.
     let sheet = hwasp_deploy::controller::hand(deployed.spec()).map_err(Failure::input)?.transmission.torque_constant;
     let calibrated = logs[0].about.torque_per_current / sheet;
-    let (text, homeless) = experiment(&deployed, &found, calibrated)?;
+    let text = experiment(&deployed, &found, calibrated)?;
     write_out(&args.out, &text)?;
     let [wound, current] = found.left;
     let [wound_before, current_before] = found.before;
@@ -55,8 +55,10 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
              calibrated torque is taken for right; measure it with `hwasp deploy calibrate --weight`",
         );
     }
-    if !homeless.is_empty() {
-        output::remark(&format!("note: the task of this run has no key for {}", homeless.join(", ")));
-    }
+    let run = args.run.as_deref().map_or_else(|| logs[0].about.run.clone(), |run| run.display().to_string());
+    output::remark(&format!(
+        "to train further with it: hwasp train {} --from {run} --env-steps 1e6",
+        args.out.display()
+    ));
     Ok(())
 }

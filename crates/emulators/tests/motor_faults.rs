@@ -31,14 +31,14 @@ fn error(motor: &mut Dynamixel) -> DriverError {
 fn an_answer_that_does_not_come_right_is_told_in_time() {
     let bench = Bench::start();
     let mut motor = bench.driver();
-    for (fault, timeout) in [("drop 1", true), ("silent", true), ("delay 130", true), ("wrong-crc 1", false)] {
+    for (fault, timeout) in [("drop 1", true), ("silent", true), ("delay 320", true), ("wrong-crc 1", false)] {
         bench.inject(fault);
         let error = error(&mut motor);
         assert_eq!(matches!(error, DriverError::Timeout { waited: REPLY, .. }), timeout, "{fault}: {error}");
         assert_eq!(matches!(error, DriverError::Protocol { .. }), !timeout, "{fault}: {error}");
         bench.inject("clear");
         // What comes late is the answer to no question.
-        thread::sleep(Duration::from_millis(150));
+        thread::sleep(Duration::from_millis(350));
         motor.state().unwrap();
     }
     let mut lost = 0;
@@ -64,7 +64,7 @@ fn late_answers_are_no_answers() {
     let bench = Bench::start();
     let mut motor = bench.driver();
     motor.torque(true).unwrap();
-    bench.inject("delay 120");
+    bench.inject("delay 300");
     for _ in 0..8 {
         let answer = motor.state();
         assert!(matches!(answer, Err(DriverError::Timeout { .. })), "{answer:?}");

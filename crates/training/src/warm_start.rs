@@ -10,7 +10,7 @@ use crate::assemble::Assembly;
 #[non_exhaustive]
 pub enum WarmStartError {
     /// What controllers have to have in common, and the values here and there.
-    #[error("{what} = {here} is {there} in the run to begin with")]
+    #[error("{what} = {here}, and the run to begin with has {there}: both have to have the same")]
     Other {
         /// Which key.
         what: String,

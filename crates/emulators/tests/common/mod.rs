@@ -12,7 +12,7 @@ use hwasp_drivers::{Dynamixel, DynamixelSettings, Pose};
 use hwasp_emulators::{DynamixelEmulator, FreeSpool, STEP, World};
 
 /// How long drivers wait for an answer.
-pub(crate) const REPLY: Duration = Duration::from_millis(1000);
+pub(crate) const REPLY: Duration = Duration::from_millis(250);
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A motor and its spool, moved on once a millisecond.

@@ -135,7 +135,7 @@ pub(crate) struct DeployRunArgs {
     /// grasp is felt; `tracker`, told all the time over UDP
     #[arg(long, default_value = "carried")]
     pub(crate) object: ObjectArg,
-    /// The most that the palm moves with, m/s, up to the rig's limit [default: the rig's limit]
+    /// The most that the palm moves with, m/s, up to the rig's limit [default: as in training, within the rig's limit]
     #[arg(long, value_name = "M/S", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) speed: Option<f64>,
     /// Grasps, one after the other

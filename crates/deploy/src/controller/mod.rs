@@ -29,6 +29,8 @@ pub struct Training {
     pub encoder: bool,
     /// The motor's torque from which on a carried object counts as held, N·m.
     pub felt: f64,
+    /// How fast the palm was at most, m/s, where training had a limit.
+    pub palm_speed: Option<f64>,
     /// Whether the object is seen from the palm.
     pub from_palm: bool,
     /// The palm's height above the object's top at the start, from and to, m.
@@ -54,6 +56,7 @@ impl Training {
         Ok(Self {
             encoder: bench.travel_sensed != TravelSensed::Commanded,
             felt: if bench.object_sensed == ObjectSensed::Tracked { FELT } else { bench.grasp_felt },
+            palm_speed: bench.palm_speed,
             from_palm: settings.viewpoint == Viewpoint::Palm,
             height: settings.height,
             size: settings.size,

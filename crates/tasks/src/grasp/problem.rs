@@ -97,10 +97,16 @@ impl Problem for GraspProblem {
     }
 
     fn presets(&self) -> Vec<Preset> {
-        vec![match self.palm {
-            PalmMotion::Vertical => Preset::new("z-grasp", include_str!("../../../../experiments/z-grasp.toml")),
-            PalmMotion::Spatial => Preset::new("3d-grasp", include_str!("../../../../experiments/3d-grasp.toml")),
-        }]
+        match self.palm {
+            PalmMotion::Vertical => vec![
+                Preset::new("z-grasp", include_str!("../../../../experiments/z-grasp.toml")),
+                Preset::new("z-grasp-bench", include_str!("../../../../experiments/z-grasp-bench.toml")),
+            ],
+            PalmMotion::Spatial => vec![
+                Preset::new("3d-grasp", include_str!("../../../../experiments/3d-grasp.toml")),
+                Preset::new("3d-grasp-bench", include_str!("../../../../experiments/3d-grasp-bench.toml")),
+            ],
+        }
     }
 }
 

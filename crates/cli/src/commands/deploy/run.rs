@@ -68,7 +68,7 @@ impl Job<'_> {
             Spool::new(&hand.transmission, rig.motor.winding, self.calibration.zero_rad, self.calibration.torque_gain);
         let mut manner = Manner::new(rig, spool, deployed.env().time_step, hand.transmission.step_limit);
         manner.shadow = args.shadow;
-        manner.palm_speed = speed(args, rig)?;
+        manner.palm_speed = speed(args, rig, &training)?;
         let mut plan = Plan::new(args.episodes as u32, args.object.known(), deployed.env(), training);
         plan.first = args.first as u32;
         plan.tracker = rig.object.tracker_port as u16;
@@ -122,9 +122,9 @@ impl Job<'_> {
 }
 
 /// The most that the palm moves with, m/s.
-fn speed(args: &DeployRunArgs, rig: &Rig) -> Result<f64, Failure> {
+fn speed(args: &DeployRunArgs, rig: &Rig, training: &Training) -> Result<f64, Failure> {
     let most = rig.limits.palm_speed;
-    let speed = args.speed.unwrap_or(most);
+    let speed = args.speed.unwrap_or_else(|| training.palm_speed.map_or(most, |trained| trained.min(most)));
     if (0.001..=most).contains(&speed) {
         return Ok(speed);
     }

@@ -84,10 +84,11 @@ fn lines() -> mpsc::Receiver<String> {
 fn obey(line: &str, process: &mut BenchProcess, held_out: &HeldOut, args: &DeployRehearseArgs) -> Result<(), Failure> {
     let Some(index) = line.strip_prefix("object ").and_then(|index| index.trim().parse().ok()) else {
         // What the bench says against an order is an answer, too.
-        return Ok(match process.order(line) {
+        match process.order(line) {
             Ok(answer) => output::print(&format!("{answer}\n"))?,
             Err(error) => output::remark(&error.to_string()),
-        });
+        }
+        return Ok(());
     };
     let (object, _) = held_out.draw(index);
     process.order(&format!("object {}", object_text(&object)))?;

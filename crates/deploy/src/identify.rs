@@ -81,6 +81,12 @@ pub fn identify(
     let mut stretches = Vec::new();
     for logged in logs {
         of_this_hand(logged, deployed)?;
+        if logged.about.what == "shadow" {
+            return Err(DeployError::Fit {
+                what: "a log of a shadow run tells nothing of the hand, for nothing moved".to_owned(),
+                hint: "name logs of runs in which it grasped",
+            });
+        }
         for (&episode, &object) in &logged.episodes {
             let per_ampere = logged.about.torque_per_current;
             // Closing and opening in the air: there the springs are all that pulls, and friction is with the one and against the other.

@@ -179,7 +179,7 @@ pub(crate) struct DeployRunArgs {
 const ORDERS: &str = "\
 It runs until its input ends or Ctrl-C. What it takes, a line each:
   object INDEX        put this held-out object there, as `hwasp eval` counts them; tells the command that grasps it
-  state               tell where everything is, JSON
+  state               tell where everything is, JSON: `success` of the hand says whether the object holds
   fault arm TEXT, fault motor TEXT
                       let something go wrong: `fault motor heat 80`, `fault arm protective-stop`
   quit";
@@ -231,7 +231,7 @@ pub(crate) struct DeployIdentifyArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct DeployTrialsArgs {
     /// The table
-    #[arg(long, value_name = "FILE", default_value = "trials.csv", value_parser = path())]
+    #[arg(long, value_name = "FILE", default_value = "deploy-logs/trials.csv", value_parser = path())]
     pub(crate) table: PathBuf,
     /// Add a grasp of this shape
     #[arg(long, requires_all = ["held", "run"])]

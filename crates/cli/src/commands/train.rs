@@ -1,6 +1,6 @@
 //! `hwasp train`.
 
-use hwasp_experiment::Catalogue;
+use hwasp_experiment::{Catalogue, Experiment, InitialDesign};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -79,8 +79,9 @@ fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed),
     further.extend(args.seed.map(|seed| ("seed", seed.to_string())));
     further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
     let name = args.experiment.as_deref().unwrap_or_default();
-    let (spec, assembly) = experiment(name, &args.settings, &further, catalogue)?;
-    let start = args.from.as_deref().map(|run| learned_before(run, &assembly, catalogue)).transpose()?;
+    let (mut spec, mut assembly) = experiment(name, &args.settings, &further, catalogue)?;
+    let from = args.from.as_deref();
+    let start = from.map(|run| learned_before(run, &mut spec, &mut assembly, catalogue)).transpose()?;
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
     let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
@@ -92,8 +93,13 @@ fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed),
     Ok((assembly, Resumed { folder, found: Found { checkpoint: start, ..Found::default() } }))
 }
 
-/// The beginning of a training that another run learned before.
-fn learned_before(run: &Path, assembly: &Assembly, catalogue: &Catalogue) -> Result<Checkpoint, Failure> {
+/// The beginning of a training that another run learned before. A design that no training moves is set to that of the run.
+fn learned_before(
+    run: &Path,
+    spec: &mut Experiment,
+    assembly: &mut Assembly,
+    catalogue: &Catalogue,
+) -> Result<Checkpoint, Failure> {
     let method = assembly.experiment().method;
     if method.searches() {
         let name = method.name();
@@ -102,9 +108,14 @@ fn learned_before(run: &Path, assembly: &Assembly, catalogue: &Catalogue) -> Res
         )));
     }
     let saved = saved_run(run_folder(run)?, &[], catalogue)?;
+    let learned = saved.params().map_err(Failure::input)?;
+    let alike = saved.assembly().policy.space().names() == assembly.policy.space().names();
+    if alike && assembly.policy.free_design().is_empty() {
+        spec.design.initial = InitialDesign::at(&spec.task.groups(), &saved.assembly().built(&learned));
+        *assembly = Assembly::new(spec).map_err(Failure::input)?;
+    }
     let main = assembly.main_stage();
-    let params =
-        warm_start(&main, saved.assembly(), &saved.params().map_err(Failure::input)?).map_err(Failure::input)?;
+    let params = warm_start(&main, saved.assembly(), &learned).map_err(Failure::input)?;
     let steps = saved.assembly().experiment().train.env_steps;
     Ok(beginning(&main, params, steps)?)
 }

@@ -286,6 +286,11 @@ impl<'a> Drive<'a> {
         let verdict = decide(&mut self.watch);
         if let Some(cause) = verdict.cause.filter(|_| verdict != before) {
             self.tell(Event::Decided(verdict.response, cause));
+            if verdict.response == Response::StopArm && !self.manner.shadow {
+                // Once; whoever stands there has to know before the time for holding is over.
+                let hold = self.manner.hold.as_secs_f64();
+                tracing::warn!("{}: the arm stands, the motor holds for {hold} s; Ctrl-C frees it", cause.name());
+            }
         }
         verdict
     }

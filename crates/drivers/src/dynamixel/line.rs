@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serial2::SerialPort;
+use std::fs::File;
 
 use super::registers::{Register, value};
 use super::settings::DynamixelSettings;
@@ -25,6 +26,8 @@ const MOST_BYTES: usize = 4096;
 #[derive(Debug)]
 pub(super) struct Line {
     port: SerialPort,
+    /// The port is this program's as long as this is open: another one would take answers away, or free the motor.
+    _lock: File,
     id: u8,
     /// For how long to wait.
     patience: Duration,
@@ -43,9 +46,15 @@ impl Line {
             what: "opening the port",
             cause: with_way_out(&error, port),
         };
+        let lock = File::open(port).map_err(failed)?;
+        lock.try_lock().map_err(|_| DriverError::Line {
+            device: name.clone(),
+            what: "opening the port",
+            cause: "another program drives this motor; end that one first".to_owned(),
+        })?;
         let mut serial = SerialPort::open(port, *baud).map_err(failed)?;
         serial.set_write_timeout(*reply).map_err(failed)?;
-        Ok(Self { port: serial, id: *id, patience: *reply, name, bytes: Vec::new() })
+        Ok(Self { port: serial, _lock: lock, id: *id, patience: *reply, name, bytes: Vec::new() })
     }
 
     /// What messages call the motor.

@@ -34,21 +34,29 @@ pub(super) fn start(deployed: &Deployed, rig: &Rig, plant: &[String]) -> Result<
 fn planted(plant: &[String]) -> Result<Planted, Failure> {
     let mut planted = Planted::default();
     for text in plant {
-        let wrong = || {
-            Failure::input(format!(
-                "--plant {text}: write NAME=NUMBER with torque_gain, tendon_stiffness, friction, slack, delay or zero"
-            ))
+        let (name, value) = text.split_once('=').map_or((&**text, ""), |(name, value)| (name.trim(), value.trim()));
+        let (from, to) = match name {
+            "torque_gain" => (0.1, 10.0),
+            "tendon_stiffness" => (100.0, 1e6),
+            "friction" => (0.0, 0.5),
+            "slack" => (0.0, 0.02),
+            "delay" => (0.0, 0.5),
+            "zero" => (-100.0, 100.0),
+            _ => {
+                let names = "torque_gain, tendon_stiffness, friction, slack, delay or zero";
+                return Err(Failure::input(format!("--plant {text}: write NAME=NUMBER with {names}")));
+            }
         };
-        let (name, value) = text.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
-        match name.trim() {
+        let Some(value) = value.parse::<f64>().ok().filter(|value| (from..=to).contains(value)) else {
+            return Err(Failure::input(format!("--plant {text}: {name} is a number from {from} to {to}")));
+        };
+        match name {
             "torque_gain" => planted.torque_gain = value,
             "tendon_stiffness" => planted.tendon_stiffness = Some(value),
             "friction" => planted.friction = value,
             "slack" => planted.slack = value,
             "delay" => planted.delay = value,
-            "zero" => planted.zero = value,
-            _ => return Err(wrong()),
+            _ => planted.zero = value,
         }
     }
     Ok(planted)

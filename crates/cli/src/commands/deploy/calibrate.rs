@@ -1,6 +1,7 @@
 //! `hwasp deploy calibrate`.
 
-use std::io::BufRead;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use hwasp_deploy::DeployError;
 use hwasp_deploy::calibrate::{Calibration, find, stands, weigh};
@@ -12,6 +13,7 @@ use hwasp_deploy::{date, devices};
 use hwasp_drivers::Motor;
 use hwasp_experiment::Catalogue;
 
+use super::answers::Answers;
 use super::{deployed, interrupts, rig};
 use crate::args::DeployCalibrateArgs;
 use crate::failure::Failure;
@@ -24,7 +26,12 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
     let (rig, deployed) = (rig(&args.rig)?, deployed(&args.run, catalogue)?);
     let hand = hand(deployed.spec()).map_err(Failure::input)?;
     stands(hand, deployed.design()).map_err(Failure::input)?;
+    if let Some(mass) = args.weight.filter(|mass| !(0.05..=5.0).contains(mass)) {
+        let limits = "0.05 to 5 kg: heavy enough to be felt, light enough to be lifted".to_owned();
+        return Err(Failure::input(DeployError::Value { name: "--weight", value: format!("{mass} kg"), limits }));
+    }
     let interrupts = interrupts()?;
+    let mut answers = Answers::listen(Arc::clone(&interrupts));
     let mut arm = devices::arm(&rig).map_err(Failure::from)?;
     devices::ready(&mut arm, &rig).map_err(Failure::from)?;
     let mut motor = devices::motor(&rig).map_err(Failure::from)?;
@@ -42,16 +49,25 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
     drive.grip().map_err(DeployError::from)?;
     if let Some(mass) = args.weight {
         output::remark(&format!("hang {mass} kg on one line from the spool, tendons off, and press Enter"));
-        let ((), ended) = drive.resting(wait_for_enter);
-        if ended.is_some() {
+        let (answer, ended) = drive.resting(|| answers.next());
+        if answer.is_none() || ended.is_some() {
+            drive.free();
             return Err(Failure::interrupted("stopped before anything was measured; the motor is free"));
         }
         let weighed = weigh(&mut drive, mass, hand)?;
         (calibration.torque_gain, calibration.gain_from) = (weighed.gain, "weight".to_owned());
         output::remark("take the weight off, put the tendons back on, slack, and press Enter");
-        let _ = drive.resting(wait_for_enter);
+        if drive.resting(|| answers.next()).0.is_none() {
+            drive.free();
+            return Err(Failure::interrupted("stopped before the tendons were measured; the motor is free"));
+        }
     }
-    let found = find(&mut drive)?;
+    let found = find(&mut drive);
+    if interrupts.load(Ordering::Relaxed) > 0 {
+        drive.free();
+        return Err(Failure::interrupted("stopped before the tendons were measured; the motor is free"));
+    }
+    let found = found?;
     drive.free();
     calibration.date = date::now();
     calibration.zero_rad = spool.position(found.onset);
@@ -68,10 +84,4 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
         args.out.display()
     );
     Ok(output::print(&text)?)
-}
-
-fn wait_for_enter() {
-    let mut line = String::new();
-    // An input that has ended answers too.
-    let _ = std::io::stdin().lock().read_line(&mut line);
 }

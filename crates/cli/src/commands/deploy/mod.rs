@@ -1,5 +1,6 @@
 //! `hwasp deploy`.
 
+mod answers;
 #[cfg(feature = "mujoco")]
 mod bench;
 mod calibrate;

@@ -1,26 +1,26 @@
 //! `hwasp deploy rehearse`.
 
-use std::io::BufRead;
+use std::net::TcpStream;
 use std::path::Path;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::Duration;
 
+use hwasp_deploy::calibrate::stands;
+use hwasp_deploy::controller::hand;
 use hwasp_deploy::dry::{BenchProcess, HeldOut};
 use hwasp_deploy::rig::{Rig, text_of};
 use hwasp_emulators::bench::object_text;
 use hwasp_experiment::Catalogue;
 
+use super::answers::Answers;
 use super::{bench, deployed, interrupts};
 use crate::args::DeployRehearseArgs;
 use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
 
+/// The last held-out object that can be asked for.
+const LAST: u64 = 1_000_000;
+
 /// How a rig of an emulated bench begins: such a file may be written anew.
 const ABOUT: &str = "# An emulated bench: `hwasp deploy rehearse` writes this file, and removes it when it ends.\n";
-
-/// How often it is looked whether somebody wants it to end.
-const LOOK: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(args: &DeployRehearseArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let deployed = deployed(&args.run, catalogue)?;
@@ -33,29 +33,35 @@ pub(crate) fn run(args: &DeployRehearseArgs, catalogue: &Catalogue) -> Result<()
             Failure::input(format!("{out} is no rig of an emulated bench, and is not overwritten")).hint(OTHER_FILE)
         );
     }
+    let alive = |rig: Rig| TcpStream::connect((&*rig.arm.host, rig.arm.rtde_port as u16)).is_ok();
+    if Rig::open(&args.out).is_ok_and(alive) {
+        return Err(Failure::input(format!("{out} is that of a rehearsal that goes on")).hint(OTHER_FILE));
+    }
+    let hand = hand(deployed.spec()).map_err(Failure::input)?;
+    if let Err(droops) = stands(hand, deployed.design()) {
+        output::remark(&format!("note: `calibrate` and `run` will refuse this hand, for {droops}"));
+    }
     let interrupts = interrupts()?;
-    let (mut process, reached) = bench::start(&deployed, &rig, &args.plant)?;
+    let (mut process, mut reached) = bench::start(&deployed, &rig, &args.plant)?;
+    // What is rehearsed is no trial of the built hand.
+    reached.log.folder = args.out.with_extension("logs");
     std::fs::write(&args.out, text_of(&reached, ABOUT)).map_err(|error| Failure::from(error).hint(OTHER_FILE))?;
     let (run, calibration) = (args.run.display(), calibration(&args.out));
     output::print(&format!(
         "the emulated bench is there: {out}\nIn another terminal, in this order:\n\n  hwasp deploy check --rig {out}\n  \
          hwasp deploy calibrate {run} --rig {out} --out {calibration}\n\nThen type `object 0` here, and there the command that it tells. `quit` ends it.\n"
     ))?;
-    let lines = lines();
+    let mut answers = Answers::listen(interrupts);
     let ended = loop {
-        if interrupts.load(Ordering::Relaxed) > 0 {
-            break Ok(());
-        }
-        match lines.recv_timeout(LOOK) {
-            Ok(line) if line.trim() == "quit" => break Ok(()),
-            Ok(line) if line.trim().is_empty() => {}
-            Ok(line) => {
-                if let Err(failure) = obey(line.trim(), &mut process, &held_out, args) {
+        match answers.next() {
+            None => break Ok(()),
+            Some(line) if line == "quit" => break Ok(()),
+            Some(line) if line.is_empty() => {}
+            Some(line) => {
+                if let Err(failure) = obey(&line, &mut process, &held_out, args) {
                     break Err(failure);
                 }
             }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break Ok(()),
         }
     };
     remove(&args.out);
@@ -67,27 +73,17 @@ fn calibration(rig: &Path) -> String {
     rig.with_extension("calibration.toml").display().to_string()
 }
 
-/// What is typed, by a thread: reading waits, and Ctrl-C does not.
-fn lines() -> mpsc::Receiver<String> {
-    let (sender, receiver) = mpsc::channel();
-    std::thread::spawn(move || {
-        for line in std::io::stdin().lock().lines() {
-            let Ok(line) = line else { return };
-            if sender.send(line).is_err() {
-                return;
-            }
-        }
-    });
-    receiver
-}
-
 fn obey(line: &str, process: &mut BenchProcess, held_out: &HeldOut, args: &DeployRehearseArgs) -> Result<(), Failure> {
-    let Some(index) = line.strip_prefix("object ").and_then(|index| index.trim().parse().ok()) else {
+    let Some(index) = line.strip_prefix("object") else {
         // What the bench says against an order is an answer, too.
         match process.order(line) {
             Ok(answer) => output::print(&format!("{answer}\n"))?,
             Err(error) => output::remark(&error.to_string()),
         }
+        return Ok(());
+    };
+    let Some(index) = index.trim().parse().ok().filter(|index| *index <= LAST) else {
+        output::remark(&format!("object{index}: write `object INDEX`, a whole number from 0 to {LAST}"));
         return Ok(());
     };
     let (object, _) = held_out.draw(index);

@@ -1,7 +1,8 @@
 //! `hwasp deploy run`.
 
-use std::io::{BufRead, IsTerminal};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
 use hwasp_deploy::calibrate::{Calibration, stands};
@@ -17,6 +18,7 @@ use hwasp_experiment::Catalogue;
 use hwasp_export::Deployed;
 use hwasp_training::stats::wilson;
 
+use super::answers::Answers;
 use super::{deployed, interrupts, rig};
 use crate::args::DeployRunArgs;
 use crate::failure::Failure;
@@ -28,19 +30,27 @@ pub(crate) fn run(args: &DeployRunArgs, catalogue: &Catalogue) -> Result<(), Fai
     if args.dry_run {
         return dry(args, &deployed, &interrupts);
     }
+    only_dry(args)?;
     let rig = rig(&args.rig)?;
     let hand = hand(deployed.spec()).map_err(Failure::input)?;
     stands(hand, deployed.design()).map_err(Failure::input)?;
     let calibration = Calibration::open(&args.calibration, &rig, deployed.design()).map_err(Failure::input)?;
-    let mut stage = Person { placed: placed(args)?, asks: !args.shadow && std::io::stdin().is_terminal() };
+    if !args.shadow && !std::io::stdin().is_terminal() {
+        return Err(Failure::input("a person has to say that everybody is clear: standard input is no terminal"));
+    }
+    let answers = Answers::listen(Arc::clone(&interrupts));
+    let mut stage = Person { placed: placed(args)?, asks: !args.shadow, answers };
     let what = if args.shadow { "shadow" } else { "run" };
     let job = Job { args, deployed: &deployed, rig: &rig, calibration: &calibration, interrupts: &interrupts, what };
-    let episodes = job.run(&mut stage)?;
-    let task = deployed.spec().task.name();
-    let trials: Vec<_> = episodes.iter().filter_map(|episode| trial(episode, task, &args.run)).collect();
-    if !trials.is_empty() {
-        add(&job.folder().join(TRIALS), &trials)?;
-    }
+    let (task, table) = (deployed.spec().task.name(), job.folder().join(TRIALS));
+    let mut kept = Ok(());
+    let episodes = job.run(&mut stage, &mut |episode| {
+        // One by one: what was seen is kept whatever comes.
+        if let (Ok(()), Some(trial)) = (&kept, trial(episode, task, &args.run)) {
+            kept = add(&table, &[trial]).map(drop);
+        }
+    })?;
+    kept?;
     ended(&episodes)
 }
 
@@ -59,7 +69,7 @@ impl Job<'_> {
         self.args.log.clone().unwrap_or_else(|| self.rig.log.folder.clone())
     }
 
-    fn run(&self, stage: &mut dyn Stage) -> Result<Vec<Episode>, Failure> {
+    fn run(&self, stage: &mut dyn Stage, seen: &mut dyn FnMut(&Episode)) -> Result<Vec<Episode>, Failure> {
         let (args, deployed, rig) = (self.args, self.deployed, self.rig);
         let hand = hand(deployed.spec()).map_err(Failure::input)?;
         let training = Training::of(deployed.spec()).map_err(Failure::input)?;
@@ -91,6 +101,7 @@ impl Job<'_> {
         let mut drive = Drive::new(bench, manner);
         let episodes = run_episodes(&mut drive, &mut controller, &plan, stage, &mut |episode| {
             output::remark(&told(episode));
+            seen(episode);
         });
         let jitter = drive.jitter().to_string();
         drop(drive);
@@ -132,6 +143,20 @@ fn speed(args: &DeployRunArgs, rig: &Rig, training: &Training) -> Result<f64, Fa
     Err(Failure::input(DeployError::Value { name: "--speed", value: speed.to_string(), limits }))
 }
 
+/// What is for dry runs alone.
+fn only_dry(args: &DeployRunArgs) -> Result<(), Failure> {
+    let given = [
+        ("--plant", !args.plant.is_empty()),
+        ("--fault", args.fault.is_some()),
+        ("--seed", args.seed.is_some()),
+        ("--first", args.first != 0),
+    ];
+    match given.iter().find(|(_, given)| *given) {
+        Some((name, _)) => Err(Failure::input(format!("{name} is for --dry-run alone"))),
+        None => Ok(()),
+    }
+}
+
 /// The object that was described.
 fn placed(args: &DeployRunArgs) -> Result<Placed, Failure> {
     let wrong = |name, value: f64, limits: &str| {
@@ -153,13 +178,19 @@ fn placed(args: &DeployRunArgs) -> Result<Placed, Failure> {
 struct Person {
     placed: Placed,
     asks: bool,
+    answers: Answers,
 }
 
 impl Stage for Person {
     fn place(&mut self, episode: u32) -> Result<Placed, DeployError> {
         if self.asks {
             output::remark(&format!("put object {episode} there, keep clear, and press Enter"));
-            let _ = answer();
+            if self.answers.next().is_none() {
+                return Err(DeployError::Stopped {
+                    cause: "nobody said that everybody is clear".to_owned(),
+                    state: "nothing was grasped, and the motor is free".to_owned(),
+                });
+            }
         }
         Ok(self.placed)
     }
@@ -169,19 +200,12 @@ impl Stage for Person {
             return Ok(None);
         }
         output::remark("does it hold? y or n; anything else counts as not looked at");
-        Ok(match answer().as_str() {
-            "y" | "yes" => Some(true),
-            "n" | "no" => Some(false),
+        Ok(match self.answers.next().as_deref() {
+            Some("y" | "yes") => Some(true),
+            Some("n" | "no") => Some(false),
             _ => None,
         })
     }
-}
-
-fn answer() -> String {
-    let mut line = String::new();
-    // An input that has ended answers nothing.
-    let _ = std::io::stdin().lock().read_line(&mut line);
-    line.trim().to_lowercase()
 }
 
 /// A line about an episode.
@@ -248,9 +272,11 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
     if let Some(fault) = &args.fault {
         stage = stage.with_fault(FAULT_AFTER, fault);
     }
-    let episodes = job.run(&mut stage)?;
+    let episodes = job.run(&mut stage, &mut |_| {})?;
     let task = deployed.spec().task.name();
-    let trials: Vec<_> = episodes.iter().filter_map(|episode| trial(episode, task, &args.run)).collect();
+    // What a rule ended was not held.
+    let counted = |episode: &Episode| Episode { held: episode.held.or(episode.ended.map(|_| false)), ..*episode };
+    let trials: Vec<_> = episodes.iter().map(counted).filter_map(|episode| trial(&episode, task, &args.run)).collect();
     let held = trials.iter().filter(|trial| trial.held).count() as u64;
     let (count, interval) = (trials.len() as u64, wilson(held, trials.len() as u64));
     let share = 100.0 * held as f64 / count.max(1) as f64;

@@ -38,9 +38,8 @@ fn planted(plant: &[String]) -> Result<Planted, Failure> {
         let (from, to) = match name {
             "torque_gain" => (0.1, 10.0),
             "tendon_stiffness" => (100.0, 1e6),
-            "friction" => (0.0, 0.5),
+            "friction" | "delay" => (0.0, 0.5),
             "slack" => (0.0, 0.02),
-            "delay" => (0.0, 0.5),
             "zero" => (-100.0, 100.0),
             _ => {
                 let names = "torque_gain, tendon_stiffness, friction, slack, delay or zero";

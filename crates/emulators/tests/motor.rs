@@ -167,6 +167,9 @@ fn a_motor_of_another_speed_is_found() {
     motor.prepare().unwrap();
     motor.torque(true).unwrap();
     bench.inject("silent");
+    let taken = Dynamixel::find_baud(&bench.settings()).unwrap_err().to_string();
+    assert!(taken.ends_with("another program drives this motor; end that one first"), "{taken}");
+    drop(motor);
     assert_eq!(Dynamixel::find_baud(&bench.settings()).unwrap(), None);
 }
 

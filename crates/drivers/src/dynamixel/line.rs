@@ -22,12 +22,23 @@ const ALERT: u8 = 0x80;
 /// More than comes before an answer, unless nothing makes sense.
 const MOST_BYTES: usize = 4096;
 
+/// For how long a port that is taken is asked again.
+const LETS_GO: Duration = Duration::from_millis(300);
+
+fn name(settings: &DynamixelSettings) -> String {
+    format!("Dynamixel {} at {}", settings.id, settings.port.display())
+}
+
+fn failed(settings: &DynamixelSettings, cause: String) -> DriverError {
+    DriverError::Line { device: name(settings), what: "opening the port", cause }
+}
+
 /// A line to one motor.
 #[derive(Debug)]
 pub(super) struct Line {
     port: SerialPort,
     /// The port is this program's as long as this is open: another one would take answers away, or free the motor.
-    _lock: File,
+    lock: File,
     id: u8,
     /// For how long to wait.
     patience: Duration,
@@ -37,24 +48,35 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Opens the port.
+    /// Opens the port, where no other program has it.
     pub(super) fn open(settings: &DynamixelSettings) -> Result<Self, DriverError> {
+        let port = &settings.port;
+        let lock = File::open(port).map_err(|error| failed(settings, with_way_out(&error, port)))?;
+        let begin = Instant::now();
+        while lock.try_lock().is_err() {
+            // One that has just let go may have a child that has yet to close what it inherited.
+            if begin.elapsed() > LETS_GO {
+                return Err(failed(settings, "another program drives this motor; end that one first".to_owned()));
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        Self::with(settings, lock)
+    }
+
+    /// The same port at another speed.
+    pub(super) fn reopened(&self, settings: &DynamixelSettings) -> Result<Self, DriverError> {
+        let lock = self.lock.try_clone().map_err(|error| failed(settings, error.to_string()))?;
+        Self::with(settings, lock)
+    }
+
+    fn with(settings: &DynamixelSettings, lock: File) -> Result<Self, DriverError> {
         let DynamixelSettings { port, id, baud, reply, .. } = settings;
-        let name = format!("Dynamixel {id} at {}", port.display());
-        let failed = |error: io::Error| DriverError::Line {
-            device: name.clone(),
-            what: "opening the port",
-            cause: with_way_out(&error, port),
-        };
-        let lock = File::open(port).map_err(failed)?;
-        lock.try_lock().map_err(|_| DriverError::Line {
-            device: name.clone(),
-            what: "opening the port",
-            cause: "another program drives this motor; end that one first".to_owned(),
-        })?;
-        let mut serial = SerialPort::open(port, *baud).map_err(failed)?;
-        serial.set_write_timeout(*reply).map_err(failed)?;
-        Ok(Self { port: serial, _lock: lock, id: *id, patience: *reply, name, bytes: Vec::new() })
+        let opened = SerialPort::open(port, *baud).and_then(|mut serial| {
+            serial.set_write_timeout(*reply)?;
+            Ok(serial)
+        });
+        let serial = opened.map_err(|error| failed(settings, with_way_out(&error, port)))?;
+        Ok(Self { port: serial, lock, id: *id, patience: *reply, name: name(settings), bytes: Vec::new() })
     }
 
     /// What messages call the motor.

@@ -79,9 +79,10 @@ impl Dynamixel {
     /// # Errors
     /// Where the port cannot be used.
     pub fn find_baud(settings: &DynamixelSettings) -> Result<Option<u32>, DriverError> {
+        let free = Line::open(settings)?;
         for baud in BAUD_RATES {
             // Not every port has every speed.
-            let Ok(mut line) = Line::open(&DynamixelSettings { baud, ..settings.clone() }) else { continue };
+            let Ok(mut line) = free.reopened(&DynamixelSettings { baud, ..settings.clone() }) else { continue };
             match line.ping() {
                 Ok(_) => return Ok(Some(baud)),
                 Err(DriverError::Line { device, what, cause }) => {
@@ -90,7 +91,7 @@ impl Dynamixel {
                 Err(_) => {}
             }
         }
-        Line::open(settings).map(|_| None)
+        Ok(None)
     }
 
     /// What it was opened with.
@@ -198,7 +199,7 @@ impl Dynamixel {
         let number = BAUD_RATES.iter().position(|&rate| rate == baud).unwrap_or_default();
         self.torque(false)?;
         self.line.set("setting its speed", BAUD_RATE, number as i32)?;
-        self.line = Line::open(&settings)?;
+        self.line = self.line.reopened(&settings)?;
         self.settings = settings;
         self.await_answer()
     }

@@ -102,13 +102,11 @@ type Plane = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 fn triangulate(outlines: &[&Outline]) -> Result<Plane, InsertionError> {
     let mut plane = Plane::new();
-    let mut corners_of = |outline: &Outline| {
-        let corners = outline.iter().map(|&[y, z]| plane.insert(Point2::new(y, z)));
-        corners.collect::<Result<Vec<FixedVertexHandle>, _>>()
-    };
-    // All corners first: where edges cross, rounding puts the crossing beside them, and no corner is found its place there.
-    let all = outlines.iter().map(|outline| corners_of(outline)).collect::<Result<Vec<_>, _>>()?;
-    for corners in &all {
+    for outline in outlines {
+        let corners = outline
+            .iter()
+            .map(|&[y, z]| plane.insert(Point2::new(y, z)))
+            .collect::<Result<Vec<FixedVertexHandle>, _>>()?;
         for (&from, &to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
             plane.add_constraint_and_split(from, to, |crossing| crossing);
         }

@@ -56,13 +56,3 @@ fn the_coupon_is_a_plate_with_the_thinnest_wall() {
     let [low, high] = coupon.mesh.bounds();
     assert!((high[0] - low[0] - 0.064).abs() < 1e-9 && (high[2] - 0.009).abs() < 1e-9);
 }
-
-/// A design of which the triangulation once lost a corner between two crossings.
-#[test]
-fn pulleys_of_the_smallest_and_a_middling_radius() {
-    let mut design = PAPER_HWASP;
-    design[..4].copy_from_slice(&[0.0024, 0.0024, 0.0024 + 0.0096 * 0.281_612_258_039_859_34, 0.0024]);
-    for part in parts(&HandDescription::default(), &design, &SPRINGS, &Workshop::default()).unwrap() {
-        assert_eq!(part.mesh.check(), Ok(()), "{}", part.name);
-    }
-}

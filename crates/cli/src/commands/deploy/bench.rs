@@ -35,12 +35,13 @@ fn planted(plant: &[String]) -> Result<Planted, Failure> {
     let mut planted = Planted::default();
     for text in plant {
         let (name, value) = text.split_once('=').map_or((&**text, ""), |(name, value)| (name.trim(), value.trim()));
-        let (from, to) = match name {
-            "torque_gain" => (0.1, 10.0),
-            "tendon_stiffness" => (100.0, 1e6),
-            "friction" | "delay" => (0.0, 0.5),
-            "slack" => (0.0, 0.02),
-            "zero" => (-100.0, 100.0),
+        let (field, [from, to]) = match name {
+            "torque_gain" => (&mut planted.torque_gain, [0.1, 10.0]),
+            "tendon_stiffness" => (planted.tendon_stiffness.get_or_insert(0.0), [100.0, 1e6]),
+            "friction" => (&mut planted.friction, [0.0, 0.5]),
+            "slack" => (&mut planted.slack, [0.0, 0.02]),
+            "delay" => (&mut planted.delay, [0.0, 0.5]),
+            "zero" => (&mut planted.zero, [-100.0, 100.0]),
             _ => {
                 let names = "torque_gain, tendon_stiffness, friction, slack, delay or zero";
                 return Err(Failure::input(format!("--plant {text}: write NAME=NUMBER with {names}")));
@@ -49,14 +50,7 @@ fn planted(plant: &[String]) -> Result<Planted, Failure> {
         let Some(value) = value.parse::<f64>().ok().filter(|value| (from..=to).contains(value)) else {
             return Err(Failure::input(format!("--plant {text}: {name} is a number from {from} to {to}")));
         };
-        match name {
-            "torque_gain" => planted.torque_gain = value,
-            "tendon_stiffness" => planted.tendon_stiffness = Some(value),
-            "friction" => planted.friction = value,
-            "slack" => planted.slack = value,
-            "delay" => planted.delay = value,
-            _ => planted.zero = value,
-        }
+        *field = value;
     }
     Ok(planted)
 }

@@ -51,21 +51,18 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
         output::remark(&format!("hang {mass} kg on one line from the spool, tendons off, and press Enter"));
         let (answer, ended) = drive.resting(|| answers.next());
         if answer.is_none() || ended.is_some() {
-            drive.free();
-            return Err(Failure::interrupted("stopped before anything was measured; the motor is free"));
+            return Err(stopped(&mut drive, "anything was"));
         }
         let weighed = weigh(&mut drive, mass, hand)?;
         (calibration.torque_gain, calibration.gain_from) = (weighed.gain, "weight".to_owned());
         output::remark("take the weight off, put the tendons back on, slack, and press Enter");
         if drive.resting(|| answers.next()).0.is_none() {
-            drive.free();
-            return Err(Failure::interrupted("stopped before the tendons were measured; the motor is free"));
+            return Err(stopped(&mut drive, "the tendons were"));
         }
     }
     let found = find(&mut drive);
     if interrupts.load(Ordering::Relaxed) > 0 {
-        drive.free();
-        return Err(Failure::interrupted("stopped before the tendons were measured; the motor is free"));
+        return Err(stopped(&mut drive, "the tendons were"));
     }
     let found = found?;
     drive.free();
@@ -84,4 +81,10 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
         args.out.display()
     );
     Ok(output::print(&text)?)
+}
+
+/// Somebody asked to stop, or is no longer there.
+fn stopped(drive: &mut Drive<'_>, what: &str) -> Failure {
+    drive.free();
+    Failure::interrupted(format!("stopped before {what} measured; the motor is free"))
 }

@@ -52,19 +52,16 @@ pub(crate) fn run(args: &DeployRehearseArgs, catalogue: &Catalogue) -> Result<()
          hwasp deploy calibrate {run} --rig {out} --out {calibration}\n\nThen type `object 0` here, and there the command that it tells. `quit` ends it.\n"
     ))?;
     let mut answers = Answers::listen(interrupts);
-    let ended = loop {
-        match answers.next() {
-            None => break Ok(()),
-            Some(line) if line == "quit" => break Ok(()),
-            Some(line) if line.is_empty() => {}
-            Some(line) => {
-                if let Err(failure) = obey(&line, &mut process, &held_out, args) {
-                    break Err(failure);
-                }
-            }
+    let mut ended = Ok(());
+    while ended.is_ok() {
+        match answers.next().as_deref() {
+            None | Some("quit") => break,
+            Some("") => {}
+            Some(line) => ended = obey(line, &mut process, &held_out, args),
         }
-    };
-    remove(&args.out);
+    }
+    // Nobody is to believe that the bench is still there.
+    let _ = std::fs::remove_file(&args.out);
     ended
 }
 
@@ -97,9 +94,4 @@ fn obey(line: &str, process: &mut BenchProcess, held_out: &HeldOut, args: &Deplo
         args.out.display(),
         calibration(&args.out)
     ))?)
-}
-
-/// Nobody is to believe that the bench is still there.
-fn remove(path: &Path) {
-    let _ = std::fs::remove_file(path);
 }

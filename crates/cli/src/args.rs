@@ -219,9 +219,10 @@ pub(crate) struct TrainArgs {
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
     /// Begin with what another run learned: weights by the names of what is seen and commanded, the design by the names of its
-    /// parameters. Values and schedules are those of the experiment
+    /// parameters. Values and schedules are those of the experiment. May be repeated: networks then stand side by side, and each
+    /// command comes from the first run that has it
     #[arg(long, value_name = "RUN", conflicts_with = "resume", value_parser = path())]
-    pub(crate) from: Option<PathBuf>,
+    pub(crate) from: Vec<PathBuf>,
     /// Go on with a training that was interrupted, from its newest checkpoint: the result has the same bits
     #[arg(long, value_name = "RUN", conflicts_with_all = ["experiment", "method", "set", "seed", "env_steps", "out"], value_parser = path())]
     pub(crate) resume: Option<PathBuf>,

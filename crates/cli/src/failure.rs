@@ -11,6 +11,8 @@ use hwasp_runs::{PolicyFileError, ReplayError, RunError};
 use hwasp_study::CompareError;
 use hwasp_workshop::WorkshopError;
 
+use crate::output::shell;
+
 /// The file of a run folder that makes it one.
 const EXPERIMENT: &str = "experiment.toml";
 /// The way out where a picture cannot be written.
@@ -94,23 +96,23 @@ fn way_out(error: &(dyn Error + 'static)) -> Option<String> {
 fn of_run(error: &RunError) -> Option<String> {
     let again = |run: &Path| {
         let experiment = run.join(EXPERIMENT);
-        format!("`hwasp train {} --out FOLDER` repeats the training", experiment.display())
+        format!("`hwasp train {} --out FOLDER` repeats the training", shell(&experiment))
     };
     let parent = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
     Some(match error {
         RunError::Nothing { .. } => "name a folder that `hwasp train` or `hwasp compare` has written to the end".into(),
         RunError::NotARun { .. } => "name a folder that `hwasp train` has written".into(),
         RunError::Unfinished { path, .. } if !path.join("summary.json").exists() => {
-            format!("`hwasp train --resume {}` goes on with it", path.display())
+            format!("`hwasp train --resume {}` goes on with it", shell(path))
         }
         RunError::Unfinished { path, .. } => again(path),
         RunError::Finished { path } => {
-            let run = path.display();
+            let run = shell(path);
             format!("`hwasp eval {run}` evaluates it; for more steps train anew, with a larger --env-steps")
         }
         RunError::OtherMachine { path, .. } => {
             let experiment = path.join(EXPERIMENT);
-            let train = format!("`hwasp train {} --set KEY=VALUE --out FOLDER` trains one", experiment.display());
+            let train = format!("`hwasp train {} --set KEY=VALUE --out FOLDER` trains one", shell(&experiment));
             format!(
                 "set what belongs to its world: objects, starts, disturbances, rewards; for another machine {train}"
             )
@@ -149,9 +151,9 @@ fn of_run(error: &RunError) -> Option<String> {
 fn of_other(file: &Path) -> Option<String> {
     let run = file.parent().and_then(Path::parent).unwrap_or(Path::new(""));
     Some(match file.file_name()?.to_str()? {
-        "parts.json" => format!("the file was changed or damaged; `hwasp parts {}` makes it anew", run.display()),
+        "parts.json" => format!("the file was changed or damaged; `hwasp parts {}` makes it anew", shell(run)),
         "tolerances.json" => {
-            format!("the file was changed or damaged; `hwasp tolerances {}` makes it anew", run.display())
+            format!("the file was changed or damaged; `hwasp tolerances {}` makes it anew", shell(run))
         }
         "provenance.json" => "the file was changed or damaged; a run is read without it, too".into(),
         "comparison.json" => "the same `hwasp compare` command makes it anew".into(),

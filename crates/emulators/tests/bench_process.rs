@@ -173,5 +173,5 @@ fn settings_that_make_no_bench_are_named() {
     assert_eq!(refused(r#"{"id": 254}"#), "id = 254 is not 0 to 252");
     assert!(refused(r#"{"baud": 1}"#).starts_with("baud = 1 is not one of 9600,"));
     let hand = json!({"hand": {"design": SEARCHED, "slack": -1.0}}).to_string();
-    assert_eq!(refused(&hand), "planted.slack = -1 is not a length that is not negative, m");
+    assert_eq!(refused(&hand), "slack = -1 is not 0 to 0.02 m");
 }

@@ -173,5 +173,5 @@ fn what_cannot_be_planted_is_named() {
     };
     let error = HandWorld::new(settings).unwrap_err();
     assert!(matches!(error, HandWorldError::Planted { name: "friction", .. }));
-    assert_eq!(error.to_string(), "planted.friction = NaN is not a torque that is not negative, N·m");
+    assert_eq!(error.to_string(), "friction = NaN is not 0 to 0.5 N·m");
 }

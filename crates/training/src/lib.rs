@@ -43,5 +43,5 @@ pub use paired::{Change, Reference};
 pub use polish::{params_at, stage_at};
 pub use train::{STILL, Trained, beginning, moved, repeat, train, train_by, train_from};
 pub use trial::{AT_ONCE, Trial};
-pub use warm_start::{WarmStartError, warm_start};
+pub use warm_start::{Learned, WarmStartError, warm_start};
 pub use worker::{LocalCollector, Worker};

@@ -4,12 +4,15 @@
 
 use hwasp_core::Actor;
 use hwasp_testing::{layers, resolve, small};
-use hwasp_training::{Assembly, WarmStartError, beginning, params_at, warm_start};
+use hwasp_training::{Assembly, Learned, WarmStartError, beginning, params_at, warm_start};
 
 fn assembly(problem: &str, settings: &[(&str, &str)]) -> Assembly {
     let layers = settings.iter().fold(layers(problem), |layers, (key, value)| layers.with_override(key, value));
     Assembly::new(&resolve(layers, None).unwrap()).unwrap()
 }
+
+/// So much noise that nothing lies beyond what a controller knows.
+const ANYWHERE: (&str, &str) = ("task.position_noise", "\"50 mm\"");
 
 /// What the controller of `assembly` commands where it sees these observations, SI.
 fn commands(assembly: &Assembly, params: &[f32], seen: &[f64]) -> Vec<f64> {
@@ -26,8 +29,7 @@ fn commands(assembly: &Assembly, params: &[f32], seen: &[f64]) -> Vec<f64> {
 /// With other centres and scales, and a further input, the controller does the same; a further command begins near rest.
 #[test]
 fn the_controller_does_what_it_did() {
-    const HAND: [(&str, &str); 1] = [("seed", "4")];
-    let hand = assembly("z-grasp", &HAND);
+    let hand = assembly("z-grasp", &[("seed", "4"), ANYWHERE]);
     let mut params = hand.init();
     // Larger outputs than a fresh controller has.
     let (weights, biases) = hand.policy.controller().last_layer();
@@ -37,12 +39,13 @@ fn the_controller_does_what_it_did() {
         "3d-grasp",
         &[
             ("task.viewpoint", "world"),
+            ANYWHERE,
             ("task.travel_sensed", "both"),
             ("controller.observation_center", "[0.1, 0, 0.3, 0, 0.02, 0.1, 0.06, 0.07, 0.07, 0.02, 0.2, 0.01]"),
             ("controller.observation_scale", "[0.1, 0.05, 0.2, 0.05, 0.05, 0.2, 0.02, 0.03, 0.02, 0.02, 0.3, 0.01]"),
         ],
     );
-    let start = warm_start(&bench, &hand, &params).unwrap();
+    let start = warm_start(&bench, &[Learned { assembly: &hand, params: &params }]).unwrap();
     let seen = [0.01, -0.02, 0.25, 0.03, 0.0, 0.05, 0.06, 0.05, 0.08, 0.012, 0.4];
     let before = commands(&hand, &params, &seen);
     let now = commands(&bench, &start, &[&seen[..], &[0.02]].concat());
@@ -56,6 +59,54 @@ fn the_controller_does_what_it_did() {
     }
     let checkpoint = beginning(&bench, start.clone(), 1).unwrap();
     assert_eq!((checkpoint.iteration, params_at(&bench, &checkpoint).unwrap()), (0, start));
+}
+
+/// A command is that of the first run that has it: of a grasp from above the fall and the motor, of one in space what is left.
+#[test]
+fn networks_stand_side_by_side() {
+    let loud = |problem: &str, seed: &str, hidden: &str| {
+        let assembly =
+            assembly(problem, &[("seed", seed), ("controller.hidden", hidden), ("task.viewpoint", "world"), ANYWHERE]);
+        let mut params = assembly.init();
+        let (weights, _) = assembly.policy.controller().last_layer();
+        params[weights].iter_mut().for_each(|weight| *weight *= 10.0);
+        (assembly, params)
+    };
+    let ((above, grasp), (space, way)) = (loud("z-grasp", "4", "[8, 6]"), loud("3d-grasp", "5", "[5, 7]"));
+    let settings = [("controller.hidden", "[13, 13]"), ("task.viewpoint", "world"), ANYWHERE];
+    let both = assembly("3d-grasp", &settings);
+    let runs = [Learned { assembly: &above, params: &grasp }, Learned { assembly: &space, params: &way }];
+    let start = warm_start(&both, &runs).unwrap();
+    let seen = [0.01, -0.02, 0.25, 0.03, 0.0, 0.05, 0.06, 0.05, 0.08, 0.012, 0.4];
+    let now = commands(&both, &start, &seen);
+    let (grasps, goes) = (commands(&above, &grasp, &seen), commands(&space, &way, &seen));
+    for (now, wanted) in now.iter().zip([goes[0], goes[1], grasps[0], grasps[1]]) {
+        assert!((now - wanted).abs() < 1e-5 * wanted.abs() && wanted != 0.0, "{now}, {wanted}");
+    }
+    let error = warm_start(&above, &runs).unwrap_err();
+    let told = "controller.hidden = [128, 128], where what it is to begin with has [8, 6] and [5, 7]: set controller.hidden = [13, 13]";
+    let wide = assembly("z-grasp", &[("task.viewpoint", "world")]);
+    assert!(matches!(error, WarmStartError::Hidden { .. }));
+    assert_eq!(warm_start(&wide, &runs).unwrap_err().to_string(), told);
+}
+
+/// To a grasp from above an object lies in the middle: wherever it lies in space, what it knew goes on.
+#[test]
+fn what_lies_beyond_is_as_it_was() {
+    let above = assembly("z-grasp", &[("seed", "4"), ("controller.hidden", "[8, 6]")]);
+    let mut grasp = above.init();
+    let (weights, _) = above.policy.controller().last_layer();
+    grasp[weights].iter_mut().for_each(|weight| *weight *= 10.0);
+    let space = assembly("3d-grasp", &[("controller.hidden", "[8, 6]"), ("task.viewpoint", "world")]);
+    let start = warm_start(&space, &[Learned { assembly: &above, params: &grasp }]).unwrap();
+    let seen = |at: f64| [0.0, 0.0, 0.25, at, -at, 0.05, 0.06, 0.05, 0.08, 0.012, 0.4];
+    let (before, now) = (commands(&above, &grasp, &seen(0.0)), commands(&space, &start, &seen(0.0)));
+    let most = before.iter().fold(0.0, |most: f64, command| most.max(command.abs()));
+    for (now, wanted) in now[2..].iter().zip(&before) {
+        assert!((now - wanted).abs() < 0.05 * most, "{now}, {wanted}");
+    }
+    assert_eq!(commands(&space, &start, &seen(0.05)), now);
+    assert_ne!(commands(&above, &grasp, &seen(0.05)), before);
 }
 
 /// Running statistics begin with the other one's, and a design within the limits.
@@ -73,7 +124,7 @@ fn statistics_and_design_are_taken_along() {
     let design = other.policy.design_params();
     params[design.clone()][0] = 30.0; // at its upper limit
     let assembly = Assembly::new(&small("hwasp", NORMALIZED)).unwrap();
-    let start = warm_start(&assembly, &other, &params).unwrap();
+    let start = warm_start(&assembly, &[Learned { assembly: &other, params: &params }]).unwrap();
     assert_eq!(start[at], [0.3, 0.7]);
     assert!((4.0..10.0).contains(&start[design][0]), "no way back from the limit");
 }
@@ -83,11 +134,11 @@ fn statistics_and_design_are_taken_along() {
 fn what_does_not_fit_is_refused() {
     let here = Assembly::new(&small("hwasp", &[])).unwrap();
     let wide = Assembly::new(&small("hwasp", &[("controller.hidden", "[7]")])).unwrap();
-    let error = warm_start(&here, &wide, &wide.init()).unwrap_err();
+    let error = warm_start(&here, &[Learned { assembly: &wide, params: &wide.init() }]).unwrap_err();
     assert!(error.to_string().starts_with("controller.hidden = "), "{error}");
-    assert!(error.to_string().contains("the run to begin with has [7]"), "{error}");
+    assert!(error.to_string().ends_with("has [7]: set controller.hidden = [7]"), "{error}");
     let hand = assembly("z-grasp", &[("controller.hidden", "[8]")]);
     let spring = assembly("mass-spring", &[("controller.hidden", "[8]"), ("controller.squash", "false")]);
-    let error = warm_start(&spring, &hand, &hand.init()).unwrap_err();
+    let error = warm_start(&spring, &[Learned { assembly: &hand, params: &hand.init() }]).unwrap_err();
     assert!(matches!(error, WarmStartError::Strange { what: "observation", .. }), "{error}");
 }

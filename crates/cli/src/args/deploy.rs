@@ -155,18 +155,18 @@ pub(crate) struct DeployRunArgs {
     #[arg(long, conflicts_with_all = ["size", "shape", "shadow"])]
     pub(crate) dry_run: bool,
     /// Root seed of the objects of a dry run [default: what the experiment says]
-    #[arg(long, requires = "dry_run", allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
+    #[arg(long, allow_negative_numbers = true, value_parser = whole(0..=LAST_SEED))]
     pub(crate) seed: Option<u64>,
     /// The first object of a dry run, counted as `hwasp eval` runs them
-    #[arg(long, value_name = "INDEX", requires = "dry_run", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=MOST_EPISODES))]
+    #[arg(long, value_name = "INDEX", default_value = "0", allow_negative_numbers = true, value_parser = whole(0..=MOST_EPISODES))]
     pub(crate) first: u64,
     /// Make the emulated hand of a dry run differ from its description: `torque_gain`, `tendon_stiffness` (N/m), `friction` (N·m), `slack`
     /// (m), `delay` (s) or `zero` (rad); may be repeated
-    #[arg(long = "plant", value_name = "NAME=NUMBER", requires = "dry_run")]
+    #[arg(long = "plant", value_name = "NAME=NUMBER")]
     pub(crate) plant: Vec<String>,
     /// Order a fault of the emulated arm or motor, 3 s after the first object is there: `motor heat 80`, `arm protective-stop`;
     /// `docs/deploy_arm.md` and `docs/deploy_motor.md` have them all
-    #[arg(long, value_name = "FAULT", requires = "dry_run")]
+    #[arg(long, value_name = "FAULT")]
     pub(crate) fault: Option<String>,
     /// Move nothing: what the controller says is only logged
     #[arg(long)]

@@ -6,7 +6,6 @@ use std::path::Path;
 
 use hwasp_experiment::{Catalogue, Folder, Layers, resolve};
 
-use super::init::shell;
 use crate::args::InitArgs;
 use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
@@ -67,8 +66,8 @@ pub(super) fn run(args: &InitArgs, catalogue: &Catalogue) -> Result<(), Failure>
         commands.join(", "),
         (1e6 * env.time_step).round() / 1e3,
         experiment.task.horizon,
-        shell(&out),
-        shell(&out),
+        output::shell(&out),
+        output::shell(&out),
     );
     Ok(output::print(&told)?)
 }

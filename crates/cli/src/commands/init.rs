@@ -56,16 +56,9 @@ fn next(project: &Project, folder: &Path, template: Template) -> String {
         text,
         "\nNext (the first build takes minutes; README.md goes on from there):\n  cd {}\n  cargo test\n  cargo hwasp train \
          experiment.toml",
-        shell(folder)
+        output::shell(folder)
     );
     text
-}
-
-/// A path as a shell reads it.
-pub(super) fn shell(path: &Path) -> String {
-    let path = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
-    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }
 
 /// What is wrong, and the way out.

@@ -113,10 +113,23 @@ fn run_folder(path: &Path) -> Result<&Path, Failure> {
 
 /// Writes a file that --out names.
 fn write_out(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|e| {
-        let error = io::Error::new(e.kind(), format!("`{}` cannot be written: {e}", path.display()));
-        Failure::from(error).hint(OTHER_FILE)
-    })
+    std::fs::write(path, text).map_err(|error| unwritten(path, &error))
+}
+
+/// Whether a file can be written there: asked before the work whose result it takes.
+fn writable(path: &Path) -> Result<(), Failure> {
+    let there = path.exists();
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+    opened.map_err(|error| unwritten(path, &error))?;
+    if !there {
+        std::fs::remove_file(path)?;
+    }
+    Ok(())
+}
+
+fn unwritten(path: &Path, error: &io::Error) -> Failure {
+    let error = io::Error::new(error.kind(), format!("`{}` cannot be written: {error}", path.display()));
+    Failure::from(error).hint(OTHER_FILE)
 }
 
 fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {

@@ -1,14 +1,15 @@
 //! `hwasp train`.
 
 use hwasp_experiment::{Catalogue, Experiment, InitialDesign};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
 use hwasp_plot::curves_svg;
 use hwasp_runs::{Found, Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
 use hwasp_training::{
-    Assembly, Checkpoint, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_from, warm_start,
+    Assembly, Checkpoint, Learned, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_from,
+    warm_start,
 };
 
 use super::{executor, experiment, run_folder, saved_run, stop_on_signal, typed};
@@ -63,7 +64,7 @@ pub(super) fn into_folder(
     if !moved(assembly, from, &trained.params) {
         tracing::warn!("the training changed nothing: {STILL}");
     }
-    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", folder.path().display());
+    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", output::shell(folder.path()));
     let finished = folder.finish(assembly, &trained, &curves_svg);
     let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
     Ok((trained, summary))
@@ -80,8 +81,10 @@ fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed),
     further.extend(args.env_steps.map(|steps| ("env-steps", steps.to_string())));
     let name = args.experiment.as_deref().unwrap_or_default();
     let (mut spec, mut assembly) = experiment(name, &args.settings, &further, catalogue)?;
-    let from = args.from.as_deref();
-    let start = from.map(|run| learned_before(run, &mut spec, &mut assembly, catalogue)).transpose()?;
+    let start = match &args.from[..] {
+        [] => None,
+        runs => Some(learned_before(runs, &mut spec, &mut assembly, catalogue)?),
+    };
     let path = args.out.clone().unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
     let provenance = Provenance::new(typed(), args.threads.get(), spec.seed);
     // A folder that cannot be had is known before the work begins.
@@ -93,9 +96,9 @@ fn begun(args: &TrainArgs, catalogue: &Catalogue) -> Result<(Assembly, Resumed),
     Ok((assembly, Resumed { folder, found: Found { checkpoint: start, ..Found::default() } }))
 }
 
-/// The beginning of a training that another run learned before. A design that no training moves is set to that of the run.
+/// The beginning of a training that other runs learned before. A design that no training moves is set to that of the first.
 fn learned_before(
-    run: &Path,
+    runs: &[PathBuf],
     spec: &mut Experiment,
     assembly: &mut Assembly,
     catalogue: &Catalogue,
@@ -107,17 +110,22 @@ fn learned_before(
             "--from: {name} begins its search anew; hwasp, minimal, episode and fixed can go on"
         )));
     }
-    let saved = saved_run(run_folder(run)?, &[], catalogue)?;
-    let learned = saved.params().map_err(Failure::input)?;
-    let alike = saved.assembly().policy.space().names() == assembly.policy.space().names();
+    let mut saved = Vec::with_capacity(runs.len());
+    for run in runs {
+        let run = saved_run(run_folder(run)?, &[], catalogue)?;
+        let params = run.params().map_err(Failure::input)?;
+        saved.push((run, params));
+    }
+    let learned: Vec<_> = saved.iter().map(|(run, params)| Learned { assembly: run.assembly(), params }).collect();
+    let Learned { assembly: first, params } = learned[0];
+    let alike = first.policy.space().names() == assembly.policy.space().names();
     if alike && assembly.policy.free_design().is_empty() {
-        spec.design.initial = InitialDesign::at(&spec.task.groups(), &saved.assembly().built(&learned));
+        spec.design.initial = InitialDesign::at(&spec.task.groups(), &first.built(params));
         *assembly = Assembly::new(spec).map_err(Failure::input)?;
     }
     let main = assembly.main_stage();
-    let params = warm_start(&main, saved.assembly(), &learned).map_err(Failure::input)?;
-    let steps = saved.assembly().experiment().train.env_steps;
-    Ok(beginning(&main, params, steps)?)
+    let params = warm_start(&main, &learned).map_err(Failure::input)?;
+    Ok(beginning(&main, params, first.experiment().train.env_steps)?)
 }
 
 /// A run that was interrupted.
@@ -135,7 +143,7 @@ fn unwritten(error: &TrainError) -> Option<&RunError> {
 
 /// What a training that did not come to its end leaves, and the way on.
 fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
-    let run = folder.path().display().to_string();
+    let run = output::shell(folder.path());
     let resume = format!("`hwasp train --resume {run}` goes on");
     if let Err(unsaved) = folder.settle() {
         let hint = format!("the last checkpoint is as it was; with the way free, {resume} from there");
@@ -144,7 +152,9 @@ fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
     match &error {
         TrainError::Interrupted { .. } => Failure::interrupted(error).hint(&format!("{resume} from there")),
         _ => match (folder.fault(), unwritten(&error)) {
-            (Some(fault), _) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", fault.display())),
+            (Some(fault), _) => {
+                Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", output::shell(fault)))
+            }
             (None, Some(_)) => Failure::from(error).hint(&format!("with the way free, {resume}")),
             (None, None) => error.into(),
         },

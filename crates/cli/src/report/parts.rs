@@ -7,6 +7,8 @@ use hwasp_training::{Change, Evaluation, MeanInterval};
 use hwasp_workshop::parts::{ChosenParts, JointDesign, JointParts, PartsList};
 use hwasp_workshop::tolerances::{Sensitivities, Side};
 
+use crate::output::shell;
+
 /// Parameters that are printed: the file has all.
 const MOST_SHOWN: usize = 24;
 
@@ -82,7 +84,7 @@ pub(crate) fn printed_for(chosen: &ChosenParts, run: &Path) -> String {
         Some(list) => format!("what is printed is made for the parts in {}", list.display()),
         None => format!(
             "what is printed is made for springs of the catalogue that comes with the program; `hwasp parts {}` chooses others",
-            run.display()
+            shell(run)
         ),
     }
 }

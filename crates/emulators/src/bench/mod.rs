@@ -35,6 +35,14 @@ use crate::ur::UrEmulator;
 use crate::world::{FreeSpool, STEP, SpoolState, World};
 use orders::{Device, Order};
 
+/// Whether a fault can be ordered: one of `arm` or `motor`, such as `motor heat 80`.
+///
+/// # Errors
+/// What faults there are.
+pub fn check_fault(text: &str) -> Result<(), String> {
+    orders::fault(text).map(drop)
+}
+
 /// How far the bench may be behind real time before it gives the time up: what spoke in the meantime shall not find its
 /// watchdog tripped by a bench that hurries.
 const PATIENCE: Duration = Duration::from_millis(10);

@@ -3,6 +3,7 @@
 use hwasp_grasp::Object;
 
 use super::tell::ObjectText;
+use crate::{dynamixel, ur};
 
 /// Who gets a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,16 +43,18 @@ pub(super) fn read(line: &str) -> Result<Order, String> {
     }
 }
 
-fn fault(rest: &str) -> Result<Order, String> {
+/// Reads who gets which fault, such as `motor heat 80`.
+pub(super) fn fault(rest: &str) -> Result<Order, String> {
     let wanted =
         || format!("`fault {rest}` names neither `arm` nor `motor` and then a fault, such as `fault motor heat 80`");
     let (device, text) = rest.split_once(char::is_whitespace).ok_or_else(wanted)?;
+    let text = text.trim();
     let device = match device {
-        "arm" => Device::Arm,
-        "motor" => Device::Motor,
+        "arm" => ur::check_fault(text).map(|()| Device::Arm)?,
+        "motor" => dynamixel::check_fault(text).map(|()| Device::Motor)?,
         _ => return Err(wanted()),
     };
-    Ok(Order::Fault(device, text.trim().to_owned()))
+    Ok(Order::Fault(device, text.to_owned()))
 }
 
 fn draw(rest: &str) -> Result<Order, String> {
@@ -77,6 +80,8 @@ mod tests {
             ("state now", "`state now` is no order"),
             ("fault heat 80", "names neither `arm` nor `motor`"),
             ("fault motor", "names neither `arm` nor `motor`"),
+            ("fault motor melt", "`melt` is no fault of a motor"),
+            ("fault arm melt", "\"melt\" is no fault of the arm"),
             ("object -1 2", "has not two whole numbers"),
             ("object 1", "such as `object 0 7`"),
             ("object {\"kind\": 1}", "no object: "),

@@ -47,6 +47,11 @@ pub(super) enum Order {
     Cut,
 }
 
+/// Whether an emulated motor can be ordered this.
+pub(crate) fn check_fault(text: &str) -> Result<(), String> {
+    Faults::default().take(text).map(drop)
+}
+
 impl Faults {
     /// Takes a fault by its text, a line of [the table](super).
     pub(super) fn take(&mut self, text: &str) -> Result<Order, String> {

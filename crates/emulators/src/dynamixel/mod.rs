@@ -42,6 +42,7 @@ use thiserror::Error;
 use crate::world::{SpoolDrive, SpoolState};
 use device::Device;
 use faults::Order;
+pub(crate) use faults::check_fault;
 use line::Line;
 use pty::Pty;
 

@@ -62,14 +62,24 @@ pub enum HandWorldError {
     #[error(transparent)]
     Object(#[from] EditError),
     /// A value that cannot be.
-    #[error("planted.{name} = {value} is not {limits}")]
+    #[error("{name} = {value} is not {lo} to {hi}{unit}")]
     Planted {
-        /// The field.
+        /// What is planted.
         name: &'static str,
         /// What was given.
         value: f64,
-        /// What can be.
-        limits: &'static str,
+        /// What can be, from and to.
+        lo: f64,
+        /// The same.
+        hi: f64,
+        /// Of all of them, behind a space; nothing for a factor.
+        unit: &'static str,
+    },
+    /// What nothing is called that can be planted.
+    #[error("`{name}` cannot be planted; there are {}", Planted::names())]
+    NotPlanted {
+        /// What was given.
+        name: String,
     },
 }
 
@@ -241,30 +251,6 @@ pub fn held_out(grasp: &Grasp, seed: u64, index: u64) -> (Object, [f64; 3]) {
     let mut robot = grasp.robot(None);
     robot.reset(&mut stream(seed, Purpose::EvaluationReset, 0, index));
     (robot.plant().object().clone(), robot.plant().palm())
-}
-
-impl Planted {
-    fn check(&self) -> Result<(), HandWorldError> {
-        let whole = |value: f64| value.is_finite();
-        for (name, value, possible, limits) in [
-            ("torque_gain", self.torque_gain, self.torque_gain > 0.0, "a positive factor"),
-            (
-                "tendon_stiffness",
-                self.tendon_stiffness.unwrap_or(1.0),
-                self.tendon_stiffness.is_none_or(|stiffness| stiffness > 0.0),
-                "a positive stiffness, N/m",
-            ),
-            ("friction", self.friction, self.friction >= 0.0, "a torque that is not negative, N·m"),
-            ("slack", self.slack, self.slack >= 0.0, "a length that is not negative, m"),
-            ("delay", self.delay, (0.0..=1.0).contains(&self.delay), "0 to 1 s"),
-            ("zero", self.zero, true, "a finite angle, rad"),
-        ] {
-            if !(possible && whole(value)) {
-                return Err(HandWorldError::Planted { name, value, limits });
-            }
-        }
-        Ok(())
-    }
 }
 
 fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

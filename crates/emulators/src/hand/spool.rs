@@ -2,6 +2,7 @@
 
 use hwasp_grasp::yielding;
 
+use super::HandWorldError;
 use crate::world::SpoolDrive;
 
 /// What is wrong with a built hand compared with its description: for [`HandWorld`](super::HandWorld), and for whoever has to
@@ -25,6 +26,52 @@ pub struct Planted {
 impl Default for Planted {
     fn default() -> Self {
         Self { torque_gain: 1.0, tendon_stiffness: None, friction: 0.0, slack: 0.0, delay: 0.0, zero: 0.0 }
+    }
+}
+
+/// What can be planted: names, limits and units. Beyond them nothing moves as a hand does.
+const LIMITS: [(&str, [f64; 2], &str); 6] = [
+    ("torque_gain", [0.1, 10.0], ""),
+    ("tendon_stiffness", [100.0, 1e6], " N/m"),
+    ("friction", [0.0, 0.5], " N·m"),
+    ("slack", [0.0, 0.02], " m"),
+    ("delay", [0.0, 0.5], " s"),
+    ("zero", [-100.0, 100.0], " rad"),
+];
+
+impl Planted {
+    /// What can be planted, for a person.
+    pub(super) fn names() -> String {
+        LIMITS.map(|(name, ..)| name).join(", ")
+    }
+
+    /// Plants a value by its name.
+    ///
+    /// # Errors
+    /// Where nothing is called so, or the value is outside of its limits.
+    pub fn plant(&mut self, name: &str, value: f64) -> Result<(), HandWorldError> {
+        let field = match name {
+            "torque_gain" => &mut self.torque_gain,
+            "tendon_stiffness" => self.tendon_stiffness.insert(value),
+            "friction" => &mut self.friction,
+            "slack" => &mut self.slack,
+            "delay" => &mut self.delay,
+            "zero" => &mut self.zero,
+            _ => return Err(HandWorldError::NotPlanted { name: name.to_owned() }),
+        };
+        *field = value;
+        self.check()
+    }
+
+    pub(super) fn check(&self) -> Result<(), HandWorldError> {
+        let Self { torque_gain, tendon_stiffness, friction, slack, delay, zero } = *self;
+        let values = [Some(torque_gain), tendon_stiffness, Some(friction), Some(slack), Some(delay), Some(zero)];
+        for ((name, [lo, hi], unit), value) in LIMITS.into_iter().zip(values) {
+            if let Some(value) = value.filter(|value| !(lo..=hi).contains(value)) {
+                return Err(HandWorldError::Planted { name, value, lo, hi, unit });
+            }
+        }
+        Ok(())
     }
 }
 

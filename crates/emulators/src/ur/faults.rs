@@ -34,6 +34,11 @@ pub(super) enum Order {
 const WORDS: &str =
     "protective-stop, emergency-stop, silent, delay MS, drop N, freeze, nan, cut, not-remote, idle, clear";
 
+/// Whether an emulated arm can be ordered this.
+pub(crate) fn check_fault(text: &str) -> Result<(), String> {
+    order(text, Faults::default()).map(drop)
+}
+
 /// Reads an order, on top of the faults that there are.
 pub(super) fn order(text: &str, now: Faults) -> Result<Order, String> {
     let mut words = text.split_whitespace();

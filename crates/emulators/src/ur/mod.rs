@@ -30,6 +30,7 @@ pub use settings::{Generation, Ports, UrEmulatorSettings};
 
 use controller::Controller;
 use faults::Order;
+pub(crate) use faults::check_fault;
 use server::{Door, Service, Shared, lock};
 
 /// Why there is no emulator.

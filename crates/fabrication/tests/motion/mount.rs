@@ -29,8 +29,10 @@ fn motor(horn: f64) -> (Sections, Sections) {
 fn the_spool_turns_freely_and_the_motor_has_its_room() {
     for design in [PAPER_HWASP, SEARCHED] {
         let made = parts(&HandDescription::default(), &design, &springs(), &Workshop::default()).unwrap();
-        let named = |name: &&'static str| (*name, Sections::of(made.iter().find(|part| part.name == *name).unwrap(), 2));
-        let still: Vec<_> = ["palm", "line_guide", "motor_cage", "flange_plate", "centring_ring"].iter().map(named).collect();
+        let named =
+            |name: &&'static str| (*name, Sections::of(made.iter().find(|part| part.name == *name).unwrap(), 2));
+        let still: Vec<_> =
+            ["palm", "line_guide", "motor_cage", "flange_plate", "centring_ring"].iter().map(named).collect();
         let turning: Vec<_> = ["spool_drum", "spool_hub"].iter().map(named).collect();
         let (case, horn) = motor(*turning[1].1.heights.last().unwrap());
         let apart = |one: &Sections, other: &Sections, angle: f64, what: &str| {

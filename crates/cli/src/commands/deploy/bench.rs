@@ -35,22 +35,9 @@ fn planted(plant: &[String]) -> Result<Planted, Failure> {
     let mut planted = Planted::default();
     for text in plant {
         let (name, value) = text.split_once('=').map_or((&**text, ""), |(name, value)| (name.trim(), value.trim()));
-        let (field, [from, to]) = match name {
-            "torque_gain" => (&mut planted.torque_gain, [0.1, 10.0]),
-            "tendon_stiffness" => (planted.tendon_stiffness.get_or_insert(0.0), [100.0, 1e6]),
-            "friction" => (&mut planted.friction, [0.0, 0.5]),
-            "slack" => (&mut planted.slack, [0.0, 0.02]),
-            "delay" => (&mut planted.delay, [0.0, 0.5]),
-            "zero" => (&mut planted.zero, [-100.0, 100.0]),
-            _ => {
-                let names = "torque_gain, tendon_stiffness, friction, slack, delay or zero";
-                return Err(Failure::input(format!("--plant {text}: write NAME=NUMBER with {names}")));
-            }
-        };
-        let Some(value) = value.parse::<f64>().ok().filter(|value| (from..=to).contains(value)) else {
-            return Err(Failure::input(format!("--plant {text}: {name} is a number from {from} to {to}")));
-        };
-        *field = value;
+        // What is no number is outside of all limits.
+        let value = value.parse().unwrap_or(f64::NAN);
+        planted.plant(name, value).map_err(|error| Failure::input(format!("--plant {text}: {error}")))?;
     }
     Ok(planted)
 }

@@ -13,6 +13,7 @@ use hwasp_deploy::{date, devices};
 use hwasp_drivers::Motor;
 use hwasp_experiment::Catalogue;
 
+use super::super::writable;
 use super::answers::Answers;
 use super::{deployed, interrupts, rig};
 use crate::args::DeployCalibrateArgs;
@@ -30,6 +31,7 @@ pub(crate) fn run(args: &DeployCalibrateArgs, catalogue: &Catalogue) -> Result<(
         let limits = "0.05 to 5 kg: heavy enough to be felt, light enough to be lifted".to_owned();
         return Err(Failure::input(DeployError::Value { name: "--weight", value: format!("{mass} kg"), limits }));
     }
+    writable(&args.out)?;
     let interrupts = interrupts()?;
     let mut answers = Answers::listen(Arc::clone(&interrupts));
     let mut arm = devices::arm(&rig).map_err(Failure::from)?;

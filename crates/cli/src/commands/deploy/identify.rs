@@ -1,15 +1,16 @@
 //! `hwasp deploy identify`.
 
 use std::num::NonZeroUsize;
+use std::path::Path;
 
 use hwasp_deploy::identify::{experiment, identify};
 use hwasp_deploy::log::{Logged, read};
 use hwasp_experiment::Catalogue;
 
-use super::super::{executor, write_out};
+use super::super::{executor, writable, write_out};
 use super::replay::of_log;
 use crate::args::DeployIdentifyArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
 use crate::progress::Counter;
 
@@ -17,6 +18,11 @@ use crate::progress::Counter;
 const GENERATIONS: u32 = 150;
 
 pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    if args.out.exists() {
+        let error = format!("{} is there already, and was left as it is", args.out.display());
+        return Err(Failure::input(error).hint(OTHER_FILE));
+    }
+    writable(&args.out)?;
     let logs: Vec<Logged> =
         args.logs.iter().map(|path| read(path)).collect::<Result<_, _>>().map_err(Failure::input)?;
     let deployed = of_log(&logs[0], args.run.as_deref(), catalogue)?;
@@ -55,10 +61,8 @@ pub(crate) fn run(args: &DeployIdentifyArgs, catalogue: &Catalogue) -> Result<()
              calibrated torque is taken for right; measure it with `hwasp deploy calibrate --weight`",
         );
     }
-    let run = args.run.as_deref().map_or_else(|| logs[0].about.run.clone(), |run| run.display().to_string());
-    output::remark(&format!(
-        "to train further with it: hwasp train {} --from {run} --env-steps 1e6",
-        args.out.display()
-    ));
+    let run = args.run.as_deref().unwrap_or(Path::new(&logs[0].about.run));
+    let (experiment, run) = (output::shell(&args.out), output::shell(run));
+    output::remark(&format!("to train further with it: hwasp train {experiment} --from {run} --env-steps 1e6"));
     Ok(())
 }

@@ -14,7 +14,7 @@ use super::answers::Answers;
 use super::{bench, deployed, interrupts};
 use crate::args::DeployRehearseArgs;
 use crate::failure::{Failure, OTHER_FILE};
-use crate::output;
+use crate::output::{self, shell};
 
 /// The last held-out object that can be asked for.
 const LAST: u64 = 1_000_000;
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &DeployRehearseArgs, catalogue: &Catalogue) -> Result<()
     // What is rehearsed is no trial of the built hand.
     reached.log.folder = args.out.with_extension("logs");
     std::fs::write(&args.out, text_of(&reached, ABOUT)).map_err(|error| Failure::from(error).hint(OTHER_FILE))?;
-    let (run, calibration) = (args.run.display(), calibration(&args.out));
+    let (run, out, calibration) = (shell(&args.run), shell(&args.out), calibration(&args.out));
     output::print(&format!(
         "the emulated bench is there: {out}\nIn another terminal, in this order:\n\n  hwasp deploy check --rig {out}\n  \
          hwasp deploy calibrate {run} --rig {out} --out {calibration}\n\nThen type `object 0` here, and there the command that it tells. `quit` ends it.\n"
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &DeployRehearseArgs, catalogue: &Catalogue) -> Result<()
 
 /// Where the calibration of a rehearsal is kept: not where that of the built hand is.
 fn calibration(rig: &Path) -> String {
-    rig.with_extension("calibration.toml").display().to_string()
+    shell(&rig.with_extension("calibration.toml"))
 }
 
 fn obey(line: &str, process: &mut BenchProcess, held_out: &HeldOut, args: &DeployRehearseArgs) -> Result<(), Failure> {
@@ -90,8 +90,8 @@ fn obey(line: &str, process: &mut BenchProcess, held_out: &HeldOut, args: &Deplo
     Ok(output::print(&format!(
         "a {shape} of {:.0} g; to grasp it:\n  hwasp deploy run {} --rig {} --calibration {} --size {x:.1},{y:.1},{z:.1} --at {at_x:.1},{at_y:.1} --shape {shape}\n",
         1e3 * object.mass,
-        args.run.display(),
-        args.out.display(),
+        shell(&args.run),
+        shell(&args.out),
         calibration(&args.out)
     ))?)
 }

@@ -260,7 +260,11 @@ fn dry(_: &DeployRunArgs, _: &Deployed, _: &AtomicU32) -> Result<(), Failure> {
 fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Result<(), Failure> {
     use hwasp_deploy::dry::{DryStage, HeldOut};
     use hwasp_deploy::trials::rates;
+    use hwasp_emulators::bench::check_fault;
 
+    if let Some(fault) = &args.fault {
+        check_fault(fault).map_err(|error| Failure::input(format!("--fault: {error}")))?;
+    }
     let rig = if args.rig.rig.exists() { rig(&args.rig)? } else { Rig::default() };
     let held_out = HeldOut::new(deployed, args.seed).map_err(Failure::input)?;
     let (bench, mut rig) = super::bench::start(deployed, &rig, &args.plant)?;

@@ -29,7 +29,6 @@ use crate::metrics::Metrics;
 /// | `design_lr_scale` | 1 | times the rate, for design parameters |
 /// | `log_std_lr_scale` | 1 | times the rate, for log standard deviations |
 /// | `entropy_coef` | 0 | weight of the entropy in the objective |
-/// | `bound_penalty` | 0 | weight of means beyond the commands' limits in the loss |
 /// | `max_grad_norm` | 0.5 | longest gradient |
 /// | `target_kl` | none | epochs end when the KL divergence, of steps or of draws, passes 1.5 times this |
 /// | `normalize_advantages` | true | mean 0, variance 1 over the batch |
@@ -59,9 +58,6 @@ pub struct PpoConfig {
     pub adam_epsilon: f64,
     /// Weight of the entropy in the objective (c₂ of eq. 9).
     pub entropy_coef: f64,
-    /// Weight in the loss of how far means lie beyond the limits of their commands: the mean square, in halves of the
-    /// command's range. Beyond a limit noise changes nothing, so that nothing is learned there either.
-    pub bound_penalty: f64,
     /// Longest gradient.
     pub max_grad_norm: Option<f64>,
     /// Epochs end when the KL divergence, of steps or of draws, passes 1.5 times this.
@@ -89,7 +85,6 @@ impl Default for PpoConfig {
             log_std_lr_scale: 1.0,
             adam_epsilon: 1e-8,
             entropy_coef: 0.0,
-            bound_penalty: 0.0,
             max_grad_norm: Some(0.5),
             target_kl: None,
             normalize_advantages: true,

@@ -44,8 +44,6 @@ impl Settings for PpoConfig {
         fields.number("learning_rate_final", &mut self.learning_rate_final, 0.0..=1.0, about);
         fields.number("adam_epsilon", &mut self.adam_epsilon, 1e-16..=0.1, "Adam's");
         fields.number("entropy_coef", &mut self.entropy_coef, 0.0..=10.0, "weight of the entropy");
-        let about = "weight of commands that are meant to lie beyond their limits, where noise changes nothing and nothing is learned";
-        fields.number("bound_penalty", &mut self.bound_penalty, 0.0..=10.0, about);
         fields.positive("max_grad_norm", &mut self.max_grad_norm, 1e6, "longest gradient; 0: any");
         fields.positive("target_kl", &mut self.target_kl, 100.0, "ends the epochs beyond; 0: never");
         fields.flag("normalize_advantages", &mut self.normalize_advantages, "centred and scaled per batch");

@@ -32,8 +32,6 @@ pub(super) struct GradientStep<P: Policy> {
     log_std: Vec<f32>,
     log_std_gradient: Vec<f32>,
     pub(super) gradient: Vec<f32>,
-    /// Of the action's components, where they have some.
-    limits: Vec<Option<(f32, f32)>>,
 }
 
 /// An update on its way, from epoch to epoch.
@@ -89,7 +87,6 @@ impl<P: Policy> Optimiser<P> {
             log_std: vec![0.0; actions],
             log_std_gradient: vec![0.0; actions],
             gradient: vec![0.0; params.len()],
-            limits: policy.action_limits(),
         };
         let adam = Adam::new(AdamConfig { epsilon: config.adam_epsilon, ..AdamConfig::default() }, params.len());
         Self { config, policy, params, adam, seed, step }
@@ -195,8 +192,8 @@ impl<P: Policy> Optimiser<P> {
 
 impl<P: Policy> GradientStep<P> {
     /// The gradient of the loss over the minibatch, left in `gradient`:
-    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term), and the [penalty](PpoConfig::bound_penalty).
-    /// A draw has such a term and an entropy of its own, of which each row carries its [share](crate::draws).
+    /// -mean[min(ρ·A, clip(ρ, 1±ε)·A)] - c·H (eqs. 7 and 9, without a value term). A draw has such a term and an entropy of its
+    /// own, of which each row carries its [share](crate::draws).
     pub(super) fn run(&mut self, policy: &P, params: &[f32], config: &PpoConfig, progress: f64) -> RowSums {
         policy.bind(params, &mut self.tape);
         policy.log_std(params, progress, &mut self.log_std);
@@ -215,10 +212,6 @@ impl<P: Policy> GradientStep<P> {
                 clip_ratio: config.clip_ratio as f32,
             };
             let [steps, draws] = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
-            if config.bound_penalty > 0.0 {
-                let weight = config.bound_penalty as f32 / self.minibatch.count as f32;
-                pull_within(&self.limits, mean, rows.count, weight, &mut self.cotangent);
-            }
             sums.add(RowSums { kl: steps.kl, clipped: steps.clipped, draws, ..RowSums::default() });
             policy.vjp(&rows, &self.cotangent, &mut self.tape);
         }
@@ -231,19 +224,5 @@ impl<P: Policy> GradientStep<P> {
             }
         }
         sums
-    }
-}
-
-/// Adds to the cotangents of means `[A × BLOCK]` what weight·Σe² gives them, with e how far a mean is beyond its limits, in
-/// halves of their range.
-fn pull_within(limits: &[Option<(f32, f32)>], mean: &[f32], rows: usize, weight: f32, cotangent: &mut [f32]) {
-    let columns = mean.chunks_exact(BLOCK).zip(cotangent.chunks_exact_mut(BLOCK));
-    for ((mean, cotangent), limits) in columns.zip(limits) {
-        let Some((lo, hi)) = *limits else { continue };
-        let half = 0.5 * (hi - lo);
-        for (mean, cotangent) in mean[..rows].iter().zip(cotangent) {
-            let beyond = mean - mean.clamp(lo, hi);
-            *cotangent += 2.0 * weight * beyond / (half * half);
-        }
     }
 }

@@ -104,6 +104,7 @@ impl Problem for GraspProblem {
             ],
             PalmMotion::Spatial => vec![
                 Preset::new("3d-grasp", include_str!("../../../../experiments/3d-grasp.toml")),
+                Preset::new("3d-approach", include_str!("../../../../experiments/3d-approach.toml")),
                 Preset::new("3d-grasp-bench", include_str!("../../../../experiments/3d-grasp-bench.toml")),
             ],
         }

@@ -52,8 +52,10 @@ pub struct Learned<'a> {
     pub params: &'a [f32],
 }
 
-/// From how many times as wide on an input lies beyond what a controller knows: its weights on it are those of chance. To a grasp from
-/// above, the place of an object that always lies in the middle is the noise of a sensor.
+/// What varied by less than this for a controller, as a multiple of its scale, has weights of chance: to a grasp from above, the place
+/// of an object that always lies in the middle is the noise of a sensor.
+const HARDLY: f64 = 0.2;
+/// From how many times as wide on such an input would have the controller do what it never did.
 const BEYOND: f64 = 5.0;
 /// Held-out episodes in which that is seen.
 const TRIED: u64 = 8;
@@ -63,8 +65,17 @@ const TRIED: u64 = 8;
 struct Seen {
     /// Centred and scaled.
     mean: f64,
-    /// Standard deviation, SI.
-    spread: f64,
+    /// Standard deviation, scaled.
+    deviation: f64,
+    /// SI.
+    scale: f64,
+}
+
+impl Seen {
+    /// Whether weights on it say nothing about what is seen `now`.
+    fn is_beyond(&self, now: &Self) -> bool {
+        self.deviation < HARDLY && now.deviation * now.scale > BEYOND * self.deviation * self.scale
+    }
 }
 
 impl Learned<'_> {
@@ -82,9 +93,9 @@ impl Learned<'_> {
         for row in batch.obs.chunks_exact(sampler.policy().obs_dim()) {
             moments.push(&row[..observations].iter().map(|&x| f64::from(x)).collect::<Vec<_>>());
         }
-        let scales = assembly.policy.normalizer(params);
-        let spreads = moments.variances().zip(scales.scale()).map(|(variance, scale)| variance.sqrt() * scale);
-        Ok(moments.mean.iter().zip(spreads).map(|(&mean, spread)| Seen { mean, spread }).collect())
+        let normalizer = assembly.policy.normalizer(params);
+        let seen = moments.mean.iter().zip(moments.variances()).zip(normalizer.scale());
+        Ok(seen.map(|((&mean, variance), &scale)| Seen { mean, deviation: variance.sqrt(), scale }).collect())
     }
 }
 
@@ -93,7 +104,7 @@ impl Learned<'_> {
 /// The controllers' networks stand side by side, and each command comes from the first one that has it: with one for the way to an
 /// object and one for the grasp, the palm goes there and grasps. They share nothing at first; training may connect them. Each does as it
 /// did, wherever what it sees has the same name: centres and scales may differ. What it did not see counts nothing yet, nor does what
-/// lies far [beyond](BEYOND) what it knew. What none commands begins fresh, as exploration does. A design parameter begins where the
+/// it [hardly](HARDLY) saw and what now varies far [more](BEYOND). What none commands begins fresh, as exploration does. A design parameter begins where the
 /// first training that has it ended, within the limits here.
 ///
 /// # Errors
@@ -106,7 +117,7 @@ pub fn warm_start(assembly: &Assembly, learned: &[Learned<'_>]) -> Result<Vec<f3
     for block in &mut blocks {
         let there = block.run.tried()?;
         for (input, now) in block.inputs.iter_mut().zip(&here) {
-            if let Some(i) = input.filter(|&i| now.spread > BEYOND * there[i].spread) {
+            if let Some(i) = input.filter(|&i| there[i].is_beyond(now)) {
                 (*input, block.constant[i]) = (None, there[i].mean);
             }
         }

@@ -11,6 +11,7 @@ import argparse
 import csv
 import pathlib
 import re
+import resource
 import signal
 import subprocess
 import tempfile
@@ -40,16 +41,28 @@ FAULTS = [
     ("motor overload", "hardware error|the motor is free", FREE),
     ("motor restart", "too old|the motor is free|hardware|beyond", ANY),
     ("motor stuck present-position", "stands still|beyond", STOP),
+    ("full disk", "the log cannot be written", DOWN),
     ("SIGINT", "Ctrl-C", DOWN),
     ("SIGINT twice", "Ctrl-C, twice|Ctrl-C", FREE),
 ]
 
 
+LOG_BYTES = 500_000  # what a log has in the middle of a grasp
+
+
+def full_disk():
+    """From this size on files take no more."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LOG_BYTES, LOG_BYTES))
+
+
 def run(hwasp, folder, fault, log):
     command = [hwasp, "deploy", "run", folder, "--dry-run", "--episodes", "1", "--log", log]
-    signals = fault.startswith("SIGINT")
-    process = subprocess.Popen(command + ([] if signals else ["--fault", fault]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if signals:
+    ordered = fault.startswith(("arm", "motor"))
+    told = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    limit = full_disk if fault == "full disk" else None
+    process = subprocess.Popen(command + (["--fault", fault] if ordered else []), preexec_fn=limit, **told)
+    if fault.startswith("SIGINT"):
         # The loop goes once its log has steps; then it is some time into the grasp.
         while not any(len(path.read_text().splitlines()) > 700 for path in pathlib.Path(log).glob("*.csv")):
             time.sleep(0.1)

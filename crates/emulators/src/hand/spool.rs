@@ -31,7 +31,7 @@ impl Default for Planted {
 
 /// What can be planted: names, limits and units. Beyond them nothing moves as a hand does.
 const LIMITS: [(&str, [f64; 2], &str); 6] = [
-    ("torque_gain", [0.1, 10.0], ""),
+    ("torque_gain", [0.01, 10.0], ""),
     ("tendon_stiffness", [100.0, 1e6], " N/m"),
     ("friction", [0.0, 0.5], " N·m"),
     ("slack", [0.0, 0.02], " m"),

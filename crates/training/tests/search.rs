@@ -151,10 +151,11 @@ fn failing_candidates_rank_last_and_are_charged() {
         let candidates = trained.iterations * assembly.generation().unwrap().0 as u64;
         assert!(0 < failed && failed < candidates, "{method}: {failed} of {candidates}");
         assert_eq!((trained.iterations, trained.env_steps), (sound.iterations, sound.env_steps), "{method}");
-        // Episodes of a training go side by side, so that two of them may fail in one step.
+        // Episodes of a training go side by side, so that two of them may fail in one step. The two candidates that another search ends
+        // with run 16 episodes more each, which are no candidates.
         let faults_seen = faults.load(Ordering::Relaxed);
-        let trains = method.ends_with("-rl");
-        assert!(if trains { faults_seen >= failed } else { faults_seen == failed }, "{method}: {faults_seen} {failed}");
+        let most = if method.ends_with("-rl") { u64::MAX } else { failed + 2 * 16 };
+        assert!((failed..=most).contains(&faults_seen), "{method}: {faults_seen} {failed}");
         assert!(each * candidates <= trained.env_steps);
         assert!(trained.evaluation.discounted_return.mean.is_finite());
         faults.store(0, Ordering::Relaxed);

@@ -15,9 +15,11 @@ use hwasp_plot::XAxis;
 use hwasp_report::play;
 
 pub(crate) use deploy::{
-    DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployIdentifyArgs, DeployInitArgs,
-    DeployRehearseArgs, DeployReplayArgs, DeployRunArgs, DeployTrialsArgs, RigArgs, ShapeArg,
+    DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployInitArgs, DeployRunArgs, DeployTrialsArgs,
+    RigArgs, ShapeArg,
 };
+#[cfg(feature = "mujoco")]
+pub(crate) use deploy::{DeployIdentifyArgs, DeployRehearseArgs, DeployReplayArgs};
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
 pub(crate) use studies::{CompareArgs, ReproduceArgs};

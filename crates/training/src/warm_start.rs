@@ -104,7 +104,7 @@ impl Learned<'_> {
 /// The controllers' networks stand side by side, and each command comes from the first one that has it: with one for the way to an
 /// object and one for the grasp, the palm goes there and grasps. They share nothing at first; training may connect them. Each does as it
 /// did, wherever what it sees has the same name: centres and scales may differ. What it did not see counts nothing yet, nor does what
-/// it [hardly](HARDLY) saw and what now varies far [more](BEYOND). What none commands begins fresh, as exploration does. A design parameter begins where the
+/// it hardly saw and what now varies far more. What none commands begins fresh, as exploration does. A design parameter begins where the
 /// first training that has it ended, within the limits here.
 ///
 /// # Errors

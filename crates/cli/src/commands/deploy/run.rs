@@ -16,7 +16,6 @@ use hwasp_deploy::trials::{TRIALS, Trial, add};
 use hwasp_deploy::{DeployError, date, devices};
 use hwasp_experiment::Catalogue;
 use hwasp_export::Deployed;
-use hwasp_training::stats::wilson;
 
 use super::answers::Answers;
 use super::{deployed, interrupts, rig};
@@ -261,6 +260,7 @@ fn dry(args: &DeployRunArgs, deployed: &Deployed, interrupts: &AtomicU32) -> Res
     use hwasp_deploy::dry::{DryStage, HeldOut};
     use hwasp_deploy::trials::rates;
     use hwasp_emulators::bench::check_fault;
+    use hwasp_training::stats::wilson;
 
     if let Some(fault) = &args.fault {
         check_fault(fault).map_err(|error| Failure::input(format!("--fault: {error}")))?;

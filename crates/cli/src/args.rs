@@ -14,6 +14,8 @@ use hwasp_experiment::Method;
 use hwasp_plot::XAxis;
 use hwasp_report::play;
 
+use crate::caller::Caller;
+
 pub(crate) use deploy::{
     DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployInitArgs, DeployRunArgs, DeployTrialsArgs,
     RigArgs, ShapeArg,
@@ -62,7 +64,7 @@ pub(crate) enum LogFormat {
 impl LogFormat {
     /// What a command line asks for that cannot be read.
     pub(crate) fn typed() -> Self {
-        let words: Vec<_> = std::env::args_os().collect();
+        let words = &Caller::get().words;
         let apart = words.windows(2).any(|pair| pair[0] == "--log-format" && pair[1] == "json");
         if apart || words.iter().any(|word| word == "--log-format=json") { Self::Json } else { Self::Text }
     }

@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 use hwasp_plot::PlotError;
 use hwasp_runs::checkpoint::CheckpointError;
@@ -23,7 +22,7 @@ const OTHER_FOLDER: &str = "name another folder with --out";
 
 /// An error, and whether it was there before any work began.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub struct Failure {
     error: Box<dyn Error>,
     code: u8,
     hint: Option<String>,
@@ -32,27 +31,27 @@ pub(crate) struct Failure {
 impl Failure {
     /// What was asked for is wrong, arguments, experiments and folders that were named among it: nothing was begun.
     /// Exit status 2, as for an unknown argument.
-    pub(crate) fn input(error: impl Into<Box<dyn Error>>) -> Self {
+    pub fn input(error: impl Into<Box<dyn Error>>) -> Self {
         Self { error: error.into(), code: 2, hint: None }
     }
 
     /// Someone asked the program to stop. Exit status 130, as shells have it for Ctrl-C.
-    pub(crate) fn interrupted(error: impl Into<Box<dyn Error>>) -> Self {
+    pub fn interrupted(error: impl Into<Box<dyn Error>>) -> Self {
         Self { error: error.into(), code: 130, hint: None }
     }
 
     /// Says the way on.
-    pub(crate) fn hint(self, hint: &str) -> Self {
+    pub fn hint(self, hint: &str) -> Self {
         Self { hint: Some(hint.to_owned()), ..self }
     }
 
     /// The exit status.
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.code)
+    pub fn exit_code(&self) -> u8 {
+        self.code
     }
 
     /// The error with those of its causes that it does not tell itself.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut text = self.error.to_string();
         // The faults of an experiment begin with the word themselves, each of them.
         if !text.starts_with("error: ") {

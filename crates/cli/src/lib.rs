@@ -12,6 +12,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod caller;
 mod commands;
 mod failure;
 mod grid_progress;
@@ -20,6 +21,7 @@ mod output;
 mod progress;
 mod project;
 mod report;
+mod session;
 
 use std::process::ExitCode;
 
@@ -27,18 +29,32 @@ use clap::Parser;
 use hwasp_experiment::Catalogue;
 
 use args::{Args, Command, LogFormat, LogLevel};
-use failure::Failure;
+
+pub use caller::Caller;
+pub use commands::check::checked;
+pub use failure::Failure;
+pub use session::{Session, Training, What};
 
 /// Runs the program: reads its command line, does what it asks for, and says how that went. Experiment files may name what is
 /// in the `catalogue`.
 pub fn run(catalogue: &Catalogue) -> ExitCode {
-    let args = match Args::try_parse() {
+    ExitCode::from(obeyed(catalogue))
+}
+
+/// The same for a process whose command line is not the program's alone, Python for one. Returns the exit status.
+pub fn run_for(caller: Caller, catalogue: &Catalogue) -> u8 {
+    caller.remember();
+    obeyed(catalogue)
+}
+
+fn obeyed(catalogue: &Catalogue) -> u8 {
+    let args = match Args::try_parse_from(&Caller::get().words) {
         Ok(args) => args,
         Err(answer) => return answered(&answer),
     };
     log::begin(args.log_format, args.log_level, args.command.quiet());
     match obey(&args.command, catalogue) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             tracing::error!("{}", failure.text());
             failure.exit_code()
@@ -47,7 +63,7 @@ pub fn run(catalogue: &Catalogue) -> ExitCode {
 }
 
 /// Help, the version, or what is wrong with the command line. Errors go where all others do, in the form that is asked for.
-fn answered(answer: &clap::Error) -> ExitCode {
+fn answered(answer: &clap::Error) -> u8 {
     let text = answer.render().to_string();
     if answer.use_stderr() {
         log::begin(LogFormat::typed(), LogLevel::Info, false);
@@ -55,9 +71,9 @@ fn answered(answer: &clap::Error) -> ExitCode {
     } else if let Err(error) = output::print(&text) {
         log::begin(LogFormat::typed(), LogLevel::Info, false);
         tracing::error!("error: {error}");
-        return ExitCode::FAILURE;
+        return 1;
     }
-    ExitCode::from(answer.exit_code() as u8)
+    answer.exit_code() as u8
 }
 
 fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {

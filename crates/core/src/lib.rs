@@ -32,7 +32,7 @@ pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Ports};
 pub use law::{Law, LawError};
 pub use moments::Moments;
-pub use placement::{Placement, PlacementError};
+pub use placement::{ActionDecoder, Placement, PlacementError};
 pub use policy::{
     Actor, Anneal, HardwarePolicy, Noise, Normalizer, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape,
     Reparameterised, Rows, Spread,

@@ -135,8 +135,11 @@ impl ActionLayout {
 
 /// Turns actions into what the environment takes. Where the effort is not in the action, the law is evaluated here, in
 /// the simulator's numbers, on the command within the motors' limits.
+///
+/// A rollout uses it on the actions of a policy ([`HardwarePolicy::action_decoder`](crate::HardwarePolicy::action_decoder)); so
+/// does whoever brings actions of another learner.
 #[derive(Clone, Debug)]
-pub(crate) struct ActionDecoder {
+pub struct ActionDecoder {
     law: Law,
     layout: ActionLayout,
     limits: Vec<(f64, f64)>,
@@ -170,9 +173,38 @@ impl ActionDecoder {
         }
     }
 
-    /// Fills `effort` and `command` from an action, and the commands that are not in it, at a state.
+    /// What the law gives the environment, SI, after [`decode`](Self::decode).
+    pub fn effort(&self) -> &[f64] {
+        &self.effort
+    }
+
+    /// The motors' commands, SI, within their limits, after [`decode`](Self::decode).
+    pub fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    /// Builds the hardware to another design, SI, as far as it is not in the action.
+    ///
+    /// # Panics
+    /// If there is not one value for each parameter.
+    pub fn build(&mut self, design: &[f64]) {
+        self.design.copy_from_slice(design);
+    }
+
+    /// The law that acts.
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// How many commands are not in the action, because only the law reads them and its effort is.
+    pub fn unsampled(&self) -> usize {
+        self.layout.unsampled.len()
+    }
+
+    /// Fills [`effort`](Self::effort) and [`command`](Self::command) from an action, and the commands that are not in it, at a
+    /// state; all in SI.
     #[inline]
-    pub(crate) fn decode(&mut self, action: &[f64], unsampled: &[f64], state: &[f64]) {
+    pub fn decode(&mut self, action: &[f64], unsampled: &[f64], state: &[f64]) {
         let (sampled, rest) = action.split_at(self.layout.sampled.len());
         let (efforts, commands) = rest.split_at(self.layout.efforts);
         if unsampled.is_empty() {

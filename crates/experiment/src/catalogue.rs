@@ -107,6 +107,13 @@ impl Catalogue {
         Ok(self)
     }
 
+    /// The same without a problem; as it is where there is none of this name.
+    #[must_use]
+    pub fn without(&self, name: &str) -> Self {
+        let problems = self.problems.iter().filter(|problem| problem.name() != name).cloned().collect();
+        Self { problems, learners: self.learners.clone() }
+    }
+
     /// The same with one learner more. The first one is what an experiment gets that does not choose.
     ///
     /// # Errors

@@ -31,13 +31,18 @@ pub struct Deployed {
 }
 
 /// One layer of the controller.
-pub(super) struct Layer<'a> {
-    pub(super) inputs: usize,
-    pub(super) outputs: usize,
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    /// How many numbers go in.
+    pub inputs: usize,
+    /// How many come out.
+    pub outputs: usize,
     /// `[inputs × outputs]`.
-    pub(super) weight: &'a [f32],
-    pub(super) bias: &'a [f32],
-    pub(super) activation: Activation,
+    pub weight: &'a [f32],
+    /// One for each output.
+    pub bias: &'a [f32],
+    /// What is done to the sums.
+    pub activation: Activation,
 }
 
 impl Deployed {
@@ -78,7 +83,11 @@ impl Deployed {
         &self.design
     }
 
-    pub(super) fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
+    /// That of an assembly with these parameters.
+    ///
+    /// # Errors
+    /// Where the design as built has no place in the world where it has to work.
+    pub fn new(assembly: &Assembly, params: &[f32]) -> Result<Self, AssembleError> {
         let world = assembly.worlds.deployment.clone();
         let design = assembly.worlds.training.law.as_built(&assembly.policy.design(params));
         let env = world.make.make(None).spec().clone();
@@ -105,7 +114,7 @@ impl Deployed {
     }
 
     /// The controller's layers, first to last.
-    pub(super) fn layers(&self) -> Vec<Layer<'_>> {
+    pub fn layers(&self) -> Vec<Layer<'_>> {
         let sizes = self.policy.controller().sizes();
         let (hidden, last) = (self.policy.spec().activation, sizes.len() - 2);
         let mut rest = &self.params[..];

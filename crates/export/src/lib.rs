@@ -20,7 +20,7 @@ mod printed;
 mod samples;
 mod source;
 
-pub use deployed::Deployed;
+pub use deployed::{Deployed, Layer};
 pub use error::ExportError;
 pub use export::{MOST_SAMPLES, export};
 pub use file::ExportFile;

@@ -25,7 +25,7 @@ pub struct Value {
 /// Any number of formulas over the same inputs.
 #[derive(Clone, Debug, Default)]
 pub struct Formulas {
-    steps: Vec<Step>,
+    pub(crate) steps: Vec<Step>,
     /// What the formulas of functions have come to.
     pub(crate) expanded: usize,
 }

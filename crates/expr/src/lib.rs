@@ -57,6 +57,7 @@ mod scope;
 mod shapes;
 mod suggest;
 mod syntax;
+mod text;
 mod units;
 
 pub use error::ExprError;
@@ -69,4 +70,5 @@ pub use parser::LONGEST_TEXT;
 pub use reference::{FUNCTIONS, FunctionDoc};
 pub use scope::{Distribution, NameError, Scope, Symbol};
 pub use syntax::Path;
+pub use text::Texts;
 pub use units::{parse_unit, quantity};

@@ -1,9 +1,9 @@
 //! `hwasp check`.
 
 use hwasp_core::{EnvFault, MADE_FROM};
-use hwasp_experiment::Catalogue;
+use hwasp_experiment::{Catalogue, Experiment};
 use hwasp_runs::RunFolder;
-use hwasp_training::Trial;
+use hwasp_training::{Assembly, Trial};
 
 use super::experiment;
 use crate::args::ExperimentArgs;
@@ -12,7 +12,15 @@ use crate::{output, report};
 
 pub(crate) fn run(args: &ExperimentArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let (spec, assembly) = experiment(&args.experiment, &args.settings, &[], catalogue)?;
-    RunFolder::check_names(&spec).map_err(Failure::input)?;
+    Ok(output::print(&checked(&spec, &assembly)?)?)
+}
+
+/// What is in an experiment, and what its world did when it was tried with random commands and designs.
+///
+/// # Errors
+/// Of a world in which nothing could be learned.
+pub fn checked(spec: &Experiment, assembly: &Assembly) -> Result<String, Failure> {
+    RunFolder::check_names(spec).map_err(Failure::input)?;
     let trial = Trial::of(&assembly.worlds.training);
     if let (failed, Some(first)) = &trial.failed
         && *failed == trial.episodes
@@ -31,5 +39,5 @@ pub(crate) fn run(args: &ExperimentArgs, catalogue: &Catalogue) -> Result<(), Fa
             return Err(Failure::input(format!("the environment breaks a promise: {fault}")).hint(hint));
         }
     }
-    Ok(output::print(&report::check::experiment(&spec, &assembly, &trial))?)
+    Ok(report::check::experiment(spec, assembly, &trial))
 }

@@ -34,6 +34,7 @@ use hwasp_runs::SavedRun;
 use hwasp_training::{Assembly, StandInKind};
 
 use crate::args::{LawRateArg, NearerArgs, SettingsArgs};
+use crate::caller::Caller;
 use crate::failure::{Failure, OTHER_FILE};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
@@ -56,7 +57,7 @@ fn layers(
 
 /// What was typed. Folders may be called what is no UTF-8.
 fn typed() -> Vec<String> {
-    std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect()
+    Caller::get().words.iter().map(|arg| arg.to_string_lossy().into_owned()).collect()
 }
 
 /// The experiment that arguments name, with further settings on top, put together.
@@ -73,7 +74,7 @@ fn experiment(
 }
 
 /// The run that was written to a folder.
-fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
+pub(crate) fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
     SavedRun::open_with(run_folder(path)?, set, catalogue).map_err(Failure::input)
 }
 
@@ -102,7 +103,7 @@ fn stand_in(asked: &NearerArgs, assembly: &Assembly) -> Result<Option<StandInKin
 }
 
 /// The folder of a run, if there is a folder at all.
-fn run_folder(path: &Path) -> Result<&Path, Failure> {
+pub(crate) fn run_folder(path: &Path) -> Result<&Path, Failure> {
     if path.is_dir() {
         return Ok(path);
     }
@@ -132,7 +133,7 @@ fn unwritten(path: &Path, error: &io::Error) -> Failure {
     Failure::from(error).hint(OTHER_FILE)
 }
 
-fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
+pub(crate) fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
     if threads.get() == 1 { Ok(Box::new(Serial)) } else { Ok(Box::new(Threads::new(threads.get())?)) }
 }
 

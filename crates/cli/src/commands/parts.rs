@@ -10,10 +10,11 @@ use hwasp_workshop::parts::{
 };
 use hwasp_workshop::writable;
 
-use super::train::into_folder;
 use super::{executor, saved_run, stop_on_signal, typed};
 use crate::args::PartsArgs;
 use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::session::into_folder;
 use crate::{log, output, report};
 
 pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -71,7 +72,10 @@ fn tuned(
             log::to_file(&path.join("train.log"));
             output::remark(&report::beginning(spec, path, false, None));
             let stop = stop_on_signal()?;
-            let (trained, _) = into_folder(&tuning.assembly, &mut folder, Some(&from), executor, (None, false), &stop)?;
+            let mut progress = Progress::new(&tuning.assembly);
+            let ended = into_folder(&tuning.assembly, &mut folder, Some(&from), executor, &mut progress, &stop);
+            progress.finish();
+            let (trained, _) = ended?;
             folder.remove_checkpoints()?;
             trained.params
         }

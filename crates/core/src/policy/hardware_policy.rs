@@ -216,7 +216,8 @@ impl HardwarePolicy {
         place.map(|place| layout.len() - layout.commands.len() + place)
     }
 
-    pub(crate) fn action_decoder(&self) -> ActionDecoder {
+    /// What turns its actions into what an environment takes.
+    pub fn action_decoder(&self) -> ActionDecoder {
         let law = (&self.spec.law, &self.composition.reads[..]);
         ActionDecoder::new(law, &self.spec.placements, &self.composition.layout, &self.commands)
     }

@@ -9,6 +9,7 @@ use hwasp_emulators::bench::{BenchSettings, run_bench};
 use hwasp_emulators::hand::Planted;
 use hwasp_export::Deployed;
 
+use crate::caller::Caller;
 use crate::failure::{Failure, OTHER_FILE};
 
 pub(crate) fn run(settings: &Path) -> Result<(), Failure> {
@@ -21,7 +22,7 @@ pub(crate) fn run(settings: &Path) -> Result<(), Failure> {
 
 /// Starts it with the hand of a run, which differs by what is planted: the process, and the rig that reaches it.
 pub(super) fn start(deployed: &Deployed, rig: &Rig, plant: &[String]) -> Result<(BenchProcess, Rig), Failure> {
-    let mut command = std::process::Command::new(std::env::current_exe()?);
+    let mut command = Caller::get().again();
     command.args(["deploy", "bench"]);
     let settings = std::env::temp_dir().join(format!("hwasp-bench-{}.json", std::process::id()));
     let started = BenchProcess::start(command, &settings, deployed, rig, &planted(plant)?);

@@ -5,6 +5,8 @@ Two things differ. Lanes begin with a fresh episode in each iteration, where the
 250 steps, so that an iteration has eight starts, but for the hopper's, whose later steps are unlike the first. And TRPO's values are
 fitted as PPO's are, in minibatches: with theirs, 20 steps on the whole batch, a
 training of the cheetah came to 670 in a million steps.
+
+SAC has the defaults of Stable-Baselines3, which `sac_contest.py` trains beside it.
 """
 
 import pathlib
@@ -33,6 +35,16 @@ squash = false
 output_gain = 0.01
 normalize_observations = true
 """
+# Of Stable-Baselines3's SAC: observations as they are, the last layer as torch draws it, and a spread of 1 before the squash.
+SAC_CONTROLLER = """
+[controller]
+hidden = [256, 256]
+activation = "relu"
+output_gain = 0.4
+
+[noise]
+command = 0.5
+"""
 VALUES = """
 [baseline]
 hidden = [64, 64]
@@ -51,13 +63,15 @@ minibatch_rows = 64
 normalize_advantages = false
 recompute_advantages = true
 """,
-    # The defaults of Stable-Baselines3, on observations as they are; warm-up as RL Baselines3 Zoo has it.
+    # Defaults; warm-up as RL Baselines3 Zoo has it. The temperature begins at about 1, like theirs: returns of the warm-up spread by
+    # 8 to 17.
     "sac": """
 [learner]
 algorithm = "sac"
 
 [sac]
 warmup_steps = 10_000
+temperature = 0.08
 """,
     "trpo": """
 [learner]
@@ -86,6 +100,17 @@ evaluation_episodes = 100
 """
 
 
+def train_by_episodes(robot, env_steps):
+    """Of SAC: after each whole episode as many gradient steps as it had steps."""
+    return f"""
+[train]
+env_steps = {env_steps}
+episodes_per_iteration = 1
+episode_steps = {50 if robot == "reacher" else 1000}
+evaluation_episodes = 100
+"""
+
+
 def copy_model(env, folder):
     """Takes the model of an environment from its package."""
     model = pathlib.Path(gymnasium.make(env).unwrapped.fullpath)
@@ -105,7 +130,10 @@ def write(robot, algorithm, folder, env_steps=1_000_000):
     folder = pathlib.Path(folder)
     text = (HERE / f"{robot}.toml").read_text()
     copy_model(ROBOTS[robot], folder)
-    text += CONTROLLER + LEARNER[algorithm] + VALUES + train(STEPS[algorithm], EPISODE[robot], env_steps)
+    if algorithm == "sac":
+        text += SAC_CONTROLLER + LEARNER["sac"] + train_by_episodes(robot, env_steps)
+    else:
+        text += CONTROLLER + LEARNER[algorithm] + VALUES + train(STEPS[algorithm], EPISODE[robot], env_steps)
     path = folder / f"{robot}-{algorithm}.toml"
     path.write_text(text)
     return path

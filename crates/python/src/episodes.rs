@@ -1,0 +1,546 @@
+//! Many episodes of one world, stepped in lock step by actions from outside: what is behind the Gymnasium environments.
+
+use std::sync::{Mutex, PoisonError};
+
+use hwasp_core::{ActionDecoder, End, EnvSpec, Environment, HardwarePolicy, Normalizer, Policy as _, Purpose, stream};
+use hwasp_training::World;
+use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::environment::raised;
+use crate::error::{self, Wrong};
+use crate::experiment::{Experiment, MOST_THREADS};
+
+/// The most environments of one vector.
+const MOST_LANES: usize = 65_536;
+/// Lanes that one thread steps before another one may take the next.
+const CHUNK: usize = 4;
+
+/// What is the same in all lanes.
+struct Interface {
+    env: EnvSpec,
+    names: Vec<String>,
+    /// Of each component of an action, SI; none of an effort.
+    limits: Vec<Option<(f64, f64)>>,
+    /// How many of them, the first ones, are drawn once an episode.
+    drawn: usize,
+    /// Which design parameter each of them is.
+    draws: Vec<usize>,
+    /// The world's model is made from what is drawn, so that it is put into its start again when the draw is known.
+    restarts: bool,
+    normalizer: Option<Normalizer>,
+    /// Actions are from -1 to 1 where they have limits.
+    scaled: bool,
+    progress: f64,
+}
+
+impl Interface {
+    /// An action's component in SI.
+    fn si(&self, i: usize, value: f64) -> f64 {
+        match self.limits[i] {
+            Some((lo, hi)) if self.scaled => 0.5 * (lo + hi) + 0.5 * (hi - lo) * value.clamp(-1.0, 1.0),
+            _ => value,
+        }
+    }
+}
+
+/// One environment and the episode in it.
+struct Lane {
+    /// Never locked: whoever has a lane to itself needs no lock.
+    environment: Mutex<Box<dyn Environment>>,
+    decoder: ActionDecoder,
+    /// The whole design of the episode, SI.
+    design: Vec<f64>,
+    seed: u64,
+    /// The index of the episode at hand under this seed.
+    episode: u64,
+    /// Whether an episode is under way.
+    begun: bool,
+    steps: u64,
+    state: Vec<f64>,
+    seen: Vec<f64>,
+    action: Vec<f64>,
+    unsampled: Vec<f64>,
+    obs: Vec<f32>,
+    /// The observation with which the last episode ended, where the next one has begun since.
+    last: Vec<f32>,
+    reward: f64,
+    end: Option<End>,
+}
+
+impl Lane {
+    fn environment(&mut self) -> &mut dyn Environment {
+        &mut **self.environment.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn start(&mut self, interface: &Interface) {
+        self.begun = true;
+        self.steps = 0;
+        self.put(interface);
+        self.see(interface);
+    }
+
+    /// Puts the world into the start of the episode at hand: the one of this index in a training's first iteration.
+    fn put(&mut self, interface: &Interface) {
+        let rng = &mut stream(self.seed, Purpose::TrainingReset, 0, self.episode);
+        let environment = self.environment.get_mut().unwrap_or_else(PoisonError::into_inner);
+        environment.set_progress(interface.progress);
+        environment.set_design(&self.design);
+        environment.reset(rng);
+    }
+
+    fn see(&mut self, interface: &Interface) {
+        self.environment.get_mut().unwrap_or_else(PoisonError::into_inner).observe(&mut self.seen);
+        match &interface.normalizer {
+            Some(normalizer) => normalizer.apply(&self.seen, &mut self.obs),
+            None => self.obs.iter_mut().zip(&self.seen).for_each(|(out, &x)| *out = x as f32),
+        }
+    }
+
+    fn step(&mut self, interface: &Interface, action: impl Fn(usize) -> f64) {
+        for i in 0..self.action.len() {
+            if i < interface.drawn && self.steps > 0 {
+                continue;
+            }
+            self.action[i] = interface.si(i, action(i));
+        }
+        if self.steps == 0 && interface.drawn > 0 {
+            for (&i, &value) in interface.draws.iter().zip(&self.action) {
+                let (lo, hi) = self.decoder.law().design().bounds(i);
+                self.design[i] = value.clamp(lo, hi);
+            }
+            self.decoder.build(&self.design);
+            if interface.restarts {
+                self.put(interface);
+            }
+        }
+        let environment = self.environment.get_mut().unwrap_or_else(PoisonError::into_inner);
+        environment.state(&mut self.state);
+        self.decoder.decode(&self.action, &self.unsampled, &self.state);
+        let step = environment.step(self.decoder.effort(), self.decoder.command());
+        self.steps += 1;
+        (self.reward, self.end) = (step.reward, step.end);
+        self.see(interface);
+        self.begun = step.end.is_none();
+    }
+
+    /// Begins the next episode under the same seed.
+    fn next(&mut self, interface: &Interface) {
+        self.episode += 1;
+        self.start(interface);
+    }
+}
+
+/// Episodes in lock step.
+#[pyclass(module = "hwasp")]
+pub(crate) struct Episodes {
+    interface: Interface,
+    lanes: Vec<Lane>,
+    threads: usize,
+    /// The threads, and the process that has them: after a fork they are gone.
+    pool: Option<(u32, ThreadPool)>,
+    open: bool,
+    /// Lanes whose episode ended with the last step; they begin anew with the next one.
+    waiting: Vec<bool>,
+    /// The actions of the step at hand, `[lanes, A]`.
+    actions: Vec<f64>,
+}
+
+#[pymethods]
+impl Episodes {
+    #[new]
+    #[pyo3(signature = (experiment, *, lanes, threads, deployment, scale_actions, scale_observations, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the names are Python's keywords")]
+    fn new(
+        py: Python<'_>,
+        experiment: &Experiment,
+        lanes: usize,
+        threads: usize,
+        deployment: bool,
+        scale_actions: bool,
+        scale_observations: bool,
+        progress: f64,
+    ) -> PyResult<Self> {
+        if !(1..=MOST_LANES).contains(&lanes) {
+            return Err(error::input(format!("num_envs = {lanes}; it is from 1 to {MOST_LANES}")));
+        }
+        if !(1..=MOST_THREADS).contains(&threads) {
+            return Err(error::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}")));
+        }
+        if !(0.0..=1.0).contains(&progress) {
+            return Err(error::input(format!("progress = {progress}; it is from 0 to 1")));
+        }
+        let made = py.detach(|| -> Result<Self, Wrong> {
+            let assembly = experiment.assembly()?;
+            let (policy, params) = (&assembly.policy, assembly.init());
+            let worlds = &assembly.worlds;
+            let world = if deployment { &worlds.deployment } else { &worlds.training };
+            let interface = Interface::new(policy, &params, world, scale_actions, scale_observations, progress);
+            let design = policy.design(&params);
+            let lanes = (0..lanes).map(|_| {
+                let mut decoder = policy.action_decoder();
+                decoder.build(&design);
+                Lane {
+                    environment: Mutex::new(world.make.make(None)),
+                    design: design.clone(),
+                    seed: 0,
+                    episode: 0,
+                    begun: false,
+                    steps: 0,
+                    state: vec![0.0; interface.env.state.len()],
+                    seen: vec![0.0; interface.env.observation.len()],
+                    action: vec![0.0; interface.names.len()],
+                    unsampled: vec![0.0; decoder.unsampled()],
+                    obs: vec![0.0; interface.env.observation.len()],
+                    last: vec![0.0; interface.env.observation.len()],
+                    reward: 0.0,
+                    end: None,
+                    decoder,
+                }
+            });
+            let lanes: Vec<Lane> = lanes.collect();
+            let waiting = vec![false; lanes.len()];
+            Ok(Self { interface, lanes, threads, pool: None, open: true, waiting, actions: Vec::new() })
+        });
+        if let Some(error) = raised::take() {
+            return Err(error);
+        }
+        Ok(made?)
+    }
+
+    /// Starts episodes: in all lanes, or in those of the mask. A lane without a seed goes on with the next episode of the seed
+    /// that it has. Returns the observations `[lanes, O]`.
+    fn reset<'py>(
+        &mut self,
+        py: Python<'py>,
+        seeds: Vec<Option<u64>>,
+        mask: Option<Vec<bool>>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        self.check_open()?;
+        let count = self.lanes.len();
+        if seeds.len() != count || mask.as_ref().is_some_and(|mask| mask.len() != count) {
+            return Err(error::input(format!("seeds and mask have one entry for each of {count} environments")));
+        }
+        let (lanes, interface, waiting) = (&mut self.lanes, &self.interface, &mut self.waiting);
+        py.detach(|| {
+            for (i, (lane, seed)) in lanes.iter_mut().zip(&seeds).enumerate() {
+                if mask.as_ref().is_some_and(|mask| !mask[i]) {
+                    continue;
+                }
+                waiting[i] = false;
+                match seed {
+                    Some(seed) => {
+                        (lane.seed, lane.episode) = (*seed, 0);
+                        lane.start(interface);
+                    }
+                    None => lane.next(interface),
+                }
+            }
+        });
+        check_raised()?;
+        self.observations(py)
+    }
+
+    /// One step of every lane by `action` `[lanes, A]`. Where an episode ended with the step before and `next_step` is asked for,
+    /// the lane starts its next one instead. With `same_step` it starts at once, and the last observation is kept.
+    ///
+    /// Writes observations, rewards, and whether episodes were terminated and truncated; returns the lanes whose episode ended.
+    #[allow(clippy::too_many_arguments, reason = "the arrays that are written")]
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        action: &Bound<'py, PyAny>,
+        next_step: bool,
+        same_step: bool,
+        observation: &Bound<'py, PyArray2<f32>>,
+        reward: &Bound<'py, PyArray1<f64>>,
+        terminated: &Bound<'py, PyArray1<bool>>,
+        truncated: &Bound<'py, PyArray1<bool>>,
+    ) -> PyResult<Vec<usize>> {
+        self.check_open()?;
+        let shape = [self.lanes.len(), self.interface.names.len()];
+        take_in(action, shape, &self.interface.names, &mut self.actions)?;
+        if let Some(lane) = (0..shape[0]).find(|&i| !self.lanes[i].begun && !self.waiting[i]) {
+            let what = if self.lanes[lane].end.is_some() { "is over" } else { "has not begun" };
+            return Err(error::input(format!("the episode of environment {lane} {what}: call reset first")));
+        }
+        self.attend_to_threads()?;
+        let (interface, waiting, actions, width) = (&self.interface, &self.waiting, &self.actions[..], shape[1]);
+        let work = |(i, lane): (usize, &mut Lane)| {
+            if waiting[i] {
+                lane.next(interface);
+                (lane.reward, lane.end) = (0.0, None);
+                return;
+            }
+            lane.step(interface, |component| actions[i * width + component]);
+            if same_step && lane.end.is_some() {
+                lane.last.copy_from_slice(&lane.obs);
+            }
+        };
+        let (lanes, pool) = (&mut self.lanes, self.pool.as_ref().map(|(_, pool)| pool));
+        py.detach(|| match pool {
+            Some(pool) => pool.install(|| {
+                lanes.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(work);
+            }),
+            None => lanes.iter_mut().enumerate().for_each(work),
+        });
+        check_raised()?;
+        let ended: Vec<usize> = (0..shape[0]).filter(|&i| self.lanes[i].end.is_some()).collect();
+        self.waiting.fill(false);
+        for &i in &ended {
+            self.waiting[i] = next_step;
+        }
+        let (mut reward, mut terminated, mut truncated) =
+            (reward.try_readwrite()?, terminated.try_readwrite()?, truncated.try_readwrite()?);
+        let (reward, terminated, truncated) =
+            (reward.as_slice_mut()?, terminated.as_slice_mut()?, truncated.as_slice_mut()?);
+        for (i, lane) in self.lanes.iter().enumerate() {
+            reward[i] = lane.reward;
+            terminated[i] = lane.end == Some(End::Terminated);
+            // An episode whose physics failed came to no end of its own.
+            truncated[i] = matches!(lane.end, Some(End::Truncated | End::Faulted));
+        }
+        if !same_step || ended.is_empty() {
+            self.write(observation)?;
+        }
+        Ok(ended)
+    }
+
+    /// What is to be told of a lane whose episode has ended.
+    fn ending<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyDict>> {
+        let lane = &mut self.lanes[lane];
+        let told = PyDict::new(py);
+        if let Some(outcome) = lane.environment().outcome() {
+            told.set_item("is_success", outcome.success)?;
+            told.set_item("kind", &*outcome.kind)?;
+        }
+        if let Some(name) = lane.environment().ended_by() {
+            told.set_item("ended_by", &*name)?;
+        }
+        if lane.end == Some(End::Faulted) {
+            told.set_item("fault", lane.environment().fault())?;
+        }
+        if !self.interface.env.terms.is_empty() {
+            let terms = PyDict::new(py);
+            for (name, value) in self.interface.env.terms.iter().zip(lane.environment().terms()) {
+                terms.set_item(name, value)?;
+            }
+            told.set_item("terms", terms)?;
+        }
+        Ok(told)
+    }
+
+    /// Begins the next episodes of some lanes at once, after what is to be told of them was told; writes the observations.
+    fn go_on(&mut self, py: Python<'_>, ended: Vec<usize>, observation: &Bound<'_, PyArray2<f32>>) -> PyResult<()> {
+        let (lanes, interface) = (&mut self.lanes, &self.interface);
+        py.detach(|| {
+            for i in ended {
+                lanes[i].next(interface);
+                lanes[i].end = None;
+            }
+        });
+        check_raised()?;
+        self.write(observation)
+    }
+
+    /// The observation with which the last episode of a lane ended.
+    fn last<'py>(&self, py: Python<'py>, lane: usize) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.lanes[lane].last)
+    }
+
+    /// Builds the hardware of a lane to another design, SI, from its next start on: one value for each parameter.
+    fn build(&mut self, lane: usize, design: Vec<f64>) -> PyResult<()> {
+        self.check_open()?;
+        let count = self.lanes.len();
+        let lane = self.lanes.get_mut(lane).ok_or_else(|| error::input(format!("there are {count} environments")))?;
+        let needed = lane.design.len();
+        if design.len() != needed || design.iter().any(|value| !value.is_finite()) {
+            return Err(error::input(format!("a design has {needed} finite numbers here, one for each parameter")));
+        }
+        lane.decoder.build(&design);
+        lane.design = design;
+        Ok(())
+    }
+
+    /// The design of a lane, SI.
+    fn design<'py>(&self, py: Python<'py>, lane: usize) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.lanes[lane].design)
+    }
+
+    /// Names, limits and whether in SI: of an action.
+    fn actions(&self) -> Vec<(String, Option<(f64, f64)>)> {
+        self.interface.names.iter().cloned().zip(self.interface.limits.iter().copied()).collect()
+    }
+
+    /// Names and units of an observation.
+    fn observation_ports(&self) -> Vec<(String, &'static str)> {
+        let ports = self.interface.env.observation.iter();
+        ports.map(|port| (port.name.clone(), port.dimension.si())).collect()
+    }
+
+    /// What the law reads of a lane, SI, by name.
+    fn state<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.check_open()?;
+        let names = &self.interface.env.state;
+        let mut state = vec![0.0; names.len()];
+        self.lanes[lane].environment().state(&mut state);
+        let named = PyDict::new(py);
+        for (port, value) in names.iter().zip(state) {
+            named.set_item(&port.name, value)?;
+        }
+        Ok(named)
+    }
+
+    #[getter]
+    fn horizon(&self) -> usize {
+        self.interface.env.horizon
+    }
+
+    #[getter]
+    fn time_step(&self) -> f64 {
+        self.interface.env.time_step
+    }
+
+    /// Names of design parameters with their limits, SI.
+    fn parameters(&self) -> Vec<(String, f64, f64)> {
+        let space = self.lanes[0].decoder.law().design();
+        let names = space.names().into_iter().enumerate();
+        names.map(|(i, name)| (name, space.bounds(i).0, space.bounds(i).1)).collect()
+    }
+
+    /// Tells how much of a training is done, for worlds that begin easier; it counts from the next starts on.
+    fn set_progress(&mut self, progress: f64) -> PyResult<()> {
+        if !(0.0..=1.0).contains(&progress) {
+            return Err(error::input(format!("progress = {progress}; it is from 0 to 1")));
+        }
+        self.interface.progress = progress;
+        Ok(())
+    }
+
+    /// Ends all episodes and gives the memory back.
+    fn close(&mut self, py: Python<'_>) {
+        self.open = false;
+        let (lanes, pool) = (std::mem::take(&mut self.lanes), self.pool.take());
+        py.detach(|| drop(lanes));
+        // The threads of another process are not here to be ended.
+        match pool {
+            Some((owner, pool)) if owner != std::process::id() => std::mem::forget(pool),
+            pool => py.detach(|| drop(pool)),
+        }
+    }
+
+    #[getter]
+    fn is_open(&self) -> bool {
+        self.open
+    }
+}
+
+impl Drop for Episodes {
+    fn drop(&mut self) {
+        if let Some((owner, pool)) = self.pool.take()
+            && owner != std::process::id()
+        {
+            std::mem::forget(pool);
+        }
+    }
+}
+
+impl Episodes {
+    fn check_open(&self) -> PyResult<()> {
+        if self.open { Ok(()) } else { Err(error::closed("this environment is closed")) }
+    }
+
+    /// Makes the threads where they are wanted and not there: at first, and after a fork.
+    fn attend_to_threads(&mut self) -> PyResult<()> {
+        let process = std::process::id();
+        if self.threads == 1 || self.lanes.len() <= CHUNK {
+            return Ok(());
+        }
+        if let Some((owner, pool)) = self.pool.take() {
+            if owner == process {
+                self.pool = Some((owner, pool));
+                return Ok(());
+            }
+            std::mem::forget(pool);
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(self.threads).build().map_err(Wrong::failed)?;
+        self.pool = Some((process, pool));
+        Ok(())
+    }
+
+    fn observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let width = self.interface.env.observation.len();
+        let values = self.lanes.iter().flat_map(|lane| &lane.obs).copied();
+        PyArray1::from_iter(py, values).reshape([self.lanes.len(), width])
+    }
+
+    fn write(&self, observation: &Bound<'_, PyArray2<f32>>) -> PyResult<()> {
+        let width = self.interface.env.observation.len();
+        let mut observation = observation.try_readwrite()?;
+        let rows = observation.as_slice_mut()?.chunks_exact_mut(width);
+        rows.zip(&self.lanes).for_each(|(row, lane)| row.copy_from_slice(&lane.obs));
+        Ok(())
+    }
+}
+
+impl Interface {
+    fn new(
+        policy: &HardwarePolicy,
+        params: &[f32],
+        world: &World,
+        scaled: bool,
+        scale_observations: bool,
+        progress: f64,
+    ) -> Self {
+        let names = policy.action_names().to_vec();
+        let limits = policy.action_limits();
+        let limits = limits.into_iter().map(|limits| limits.map(|(lo, hi)| (f64::from(lo), f64::from(hi)))).collect();
+        let (drawn, space) = (policy.drawn_actions(), policy.space());
+        let all = space.names();
+        let place = |name: &String| all.iter().position(|known| known == name);
+        let draws: Vec<usize> = names[..drawn].iter().filter_map(place).collect();
+        let shaped = |&i: &usize| world.env.shaped_by.contains(&space.group_of(i).name);
+        Self {
+            env: world.env.clone(),
+            limits,
+            drawn,
+            restarts: draws.iter().any(shaped),
+            draws,
+            normalizer: scale_observations.then(|| policy.normalizer(params)),
+            scaled,
+            names,
+            progress,
+        }
+    }
+}
+
+/// Takes actions `[lanes, A]` in, of single precision or of double: other threads may write into the array meanwhile.
+fn take_in(action: &Bound<'_, PyAny>, shape: [usize; 2], names: &[String], taken: &mut Vec<f64>) -> PyResult<()> {
+    taken.clear();
+    let found = if let Ok(array) = action.cast::<PyArray2<f32>>() {
+        let array = array.try_readonly()?;
+        taken.extend(array.as_array().iter().map(|&x| f64::from(x)));
+        array.as_array().shape().to_vec()
+    } else {
+        let array = PyModule::import(action.py(), "numpy")?.call_method1("asarray", (action, "float64"));
+        let array = array.map_err(|error| error::input(format!("this is no array of actions: {error}")))?;
+        let array = array.cast_into::<PyArrayDyn<f64>>().map_err(PyErr::from)?.try_readonly()?;
+        taken.extend(array.as_array().iter());
+        array.as_array().shape().to_vec()
+    };
+    if found != shape {
+        return Err(error::input(format!("actions have the shape {found:?}, where {shape:?} is asked for")));
+    }
+    if let Some(at) = taken.iter().position(|x| !x.is_finite()) {
+        let (lane, name) = (at / shape[1], &names[at % shape[1]]);
+        return Err(error::input(format!("the action {name} of environment {lane} is no finite number")));
+    }
+    Ok(())
+}
+
+fn check_raised() -> PyResult<()> {
+    raised::take().map_or(Ok(()), Err)
+}

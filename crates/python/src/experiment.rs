@@ -1,0 +1,177 @@
+//! Experiments.
+
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use hwasp_cli::{Training, What, checked};
+use hwasp_experiment::{Layers, load, resolve};
+use hwasp_settings::Folder;
+use hwasp_training::Assembly;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::catalogue::catalogue;
+use crate::error::{self, Wrong};
+use crate::run::Run;
+use crate::training::{Told, train};
+use crate::value::{kind, plain, text, toml_value};
+use crate::{command, log};
+
+/// An experiment: what is trained, in which world, by what learner. It never changes: `set` gives another one.
+#[pyclass(frozen, module = "hwasp")]
+#[derive(Clone)]
+pub(crate) struct Experiment {
+    layers: Layers,
+}
+
+impl Experiment {
+    /// With every setting in its place.
+    pub(crate) fn resolved(&self) -> Result<hwasp_experiment::Experiment, Wrong> {
+        resolve(self.layers.clone(), None, &catalogue()).map_err(Wrong::input)
+    }
+
+    /// Ready to run.
+    pub(crate) fn assembly(&self) -> Result<Assembly, Wrong> {
+        Assembly::new(&self.resolved()?).map_err(Wrong::input)
+    }
+
+    pub(crate) fn layers(&self) -> &Layers {
+        &self.layers
+    }
+
+    pub(crate) fn of(layers: Layers) -> Self {
+        Self { layers }
+    }
+}
+
+#[pymethods]
+impl Experiment {
+    #[staticmethod]
+    fn load(py: Python<'_>, what: &Bound<'_, PyAny>) -> PyResult<Self> {
+        log::begin();
+        if let Ok(experiment) = what.cast::<Self>() {
+            return Ok(experiment.get().clone());
+        }
+        if what.is_instance_of::<PyDict>() {
+            let text = toml::to_string(&toml_value(what)?).map_err(Wrong::failed)?;
+            let layers = Layers::from_text("experiment", &text).map_err(Wrong::input)?;
+            return Ok(Self::of(layers.with_folder(Folder::Disk(".".into()))));
+        }
+        let name = match what.cast::<PyString>() {
+            Ok(name) => name.to_str()?.to_owned(),
+            // Paths.
+            Err(_) => match what.call_method0("__fspath__") {
+                Ok(path) => text(&path, "a path")?,
+                Err(_) => {
+                    let message = format!("an experiment is a name, a path or a dict, not {}", kind(what));
+                    return Err(pyo3::exceptions::PyTypeError::new_err(message));
+                }
+            },
+        };
+        Ok(Self::of(py.detach(|| load(&name, &catalogue())).map_err(Wrong::input)?))
+    }
+
+    #[pyo3(signature = (settings = None, /, **more))]
+    fn set(&self, settings: Option<&Bound<'_, PyDict>>, more: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let mut layers = self.layers.clone();
+        for table in [settings, more].into_iter().flatten() {
+            for (key, value) in table {
+                let (key, value) = (text(&key, "the name of a setting")?, toml_value(&value)?);
+                layers = layers.with_override(&key, &value.to_string());
+            }
+        }
+        Ok(Self::of(layers))
+    }
+
+    fn check(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(py.detach(|| -> Result<String, Wrong> {
+            let assembly = self.assembly()?;
+            Ok(checked(assembly.experiment(), &assembly)?)
+        })?)
+    }
+
+    #[getter]
+    fn name(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(py.detach(|| self.resolved())?.name)
+    }
+
+    #[getter]
+    fn method(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(py.detach(|| self.resolved())?.method.name())
+    }
+
+    #[getter]
+    fn seed(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(py.detach(|| self.resolved())?.seed)
+    }
+
+    fn to_toml(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(py.detach(|| -> Result<String, Wrong> { self.resolved()?.to_toml().map_err(Wrong::failed) })?)
+    }
+
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let table: toml::Table = toml::from_str(&self.to_toml(py)?).map_err(Wrong::failed)?;
+        plain(py, &table)
+    }
+
+    /// All that it takes to have it again elsewhere: every setting as TOML, and the files that it names.
+    fn packed(&self, py: Python<'_>) -> PyResult<(String, BTreeMap<String, Vec<u8>>)> {
+        Ok(py.detach(|| -> Result<_, Wrong> {
+            let spec = self.resolved()?;
+            let files = spec.files().iter().map(|(path, bytes)| (path.clone(), bytes.to_vec())).collect();
+            Ok((spec.to_toml().map_err(Wrong::failed)?, files))
+        })?)
+    }
+
+    #[staticmethod]
+    fn unpacked(text: &str, files: BTreeMap<String, Vec<u8>>) -> PyResult<Self> {
+        log::begin();
+        let layers = Layers::from_text("experiment", text).map_err(Wrong::input)?;
+        let files = files.into_iter().map(|(path, bytes)| (path, Arc::from(bytes))).collect();
+        Ok(Self::of(layers.with_folder(Folder::Sent(Arc::new(files)))))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        match py.detach(|| self.resolved()) {
+            Ok(spec) => format!("Experiment({}, {}, seed {})", spec.name, spec.method.name(), spec.seed),
+            Err(_) => "Experiment(with faults: check() tells them)".to_owned(),
+        }
+    }
+
+    #[pyo3(signature = (*, out, learned, threads, checkpoint_every, tensorboard, watch))]
+    #[allow(clippy::too_many_arguments, reason = "the names are Python's keywords")]
+    fn train(
+        &self,
+        py: Python<'_>,
+        out: Option<PathBuf>,
+        learned: Vec<PathBuf>,
+        threads: usize,
+        checkpoint_every: f64,
+        tensorboard: bool,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<Run> {
+        let what = What::Anew { layers: self.layers.clone(), method: None, learned, out };
+        train(py, training(py, what, threads, checkpoint_every, tensorboard)?, Told::of(watch))
+    }
+}
+
+/// A training as keywords ask for it.
+pub(crate) fn training(
+    py: Python<'_>,
+    what: What,
+    threads: usize,
+    checkpoint_every: f64,
+    tensorboard: bool,
+) -> PyResult<Training> {
+    let threads = NonZeroUsize::new(threads).filter(|threads| threads.get() <= MOST_THREADS);
+    let threads = threads.ok_or_else(|| error::input(format!("threads is from 1 to {MOST_THREADS}")))?;
+    let checkpoint_every = Duration::try_from_secs_f64(checkpoint_every)
+        .map_err(|_| error::input(format!("checkpoint_every is a time in s, not {checkpoint_every}")))?;
+    Ok(Training { what, threads, checkpoint_every, tensorboard, command_line: command::line(py) })
+}
+
+/// The most threads that one may ask for.
+pub(crate) const MOST_THREADS: usize = 1024;

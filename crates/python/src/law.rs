@@ -1,0 +1,395 @@
+//! Laws in Python: a function over traced numbers becomes the same program as a law in Rust, or as text.
+//!
+//! A traced number is a scalar of [`Formulas`], so that everything a formula of an experiment can say, a law in Python can say, too.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use hwasp_core::{DesignGroup, DesignSpace, Dimension, Initial, Law as CoreLaw, Ports, unit};
+use hwasp_diff::{GradCheckSettings, gradcheck};
+use hwasp_expr::{Formulas, NameError, Part, Path, Quantity, Scope, Symbol};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::error::{self, Wrong};
+use crate::value::kind;
+
+/// What a law comes to while it is traced.
+type Tracing = Arc<Mutex<Formulas>>;
+
+fn lock(tracing: &Tracing) -> MutexGuard<'_, Formulas> {
+    tracing.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A number of a law that is traced.
+#[pyclass(frozen, module = "hwasp")]
+#[derive(Clone)]
+pub(crate) struct Number {
+    tracing: Tracing,
+    part: Part,
+}
+
+/// The operands of a formula, `a0`, `a1` and so on.
+struct Operands(Vec<Part>);
+
+impl Scope for Operands {
+    fn name(&mut self, _: &mut Formulas, path: &Path) -> Result<Symbol, NameError> {
+        let place = path.first().strip_prefix('a').and_then(|number| number.parse::<usize>().ok());
+        let part = place.and_then(|place| self.0.get(place)).ok_or_else(|| NameError::unknown([""; 0]))?;
+        Ok(Symbol::new(vec![*part], Quantity::Unknown, 1))
+    }
+}
+
+/// Computes a formula of operands that are traced numbers or plain ones; of plain ones alone it is a float.
+fn compute<'py>(py: Python<'py>, formula: &str, operands: &[Bound<'py, PyAny>]) -> PyResult<Bound<'py, PyAny>> {
+    let traced = operands.iter().find_map(|operand| operand.cast::<Number>().ok());
+    let tracing = traced.map_or_else(Tracing::default, |number| Arc::clone(&number.get().tracing));
+    let mut parts = Vec::with_capacity(operands.len());
+    for operand in operands {
+        parts.push(match operand.cast::<Number>() {
+            Ok(number) if Arc::ptr_eq(&number.get().tracing, &tracing) => number.get().part,
+            Ok(_) => return Err(PyValueError::new_err("numbers of two laws must not be mixed")),
+            Err(_) => {
+                let value: f64 = operand.extract().map_err(|_| {
+                    PyTypeError::new_err(format!("a law computes with numbers, and this is {}", kind(operand)))
+                })?;
+                lock(&tracing).constant(value)
+            }
+        });
+    }
+    let mut formulas = lock(&tracing);
+    let read = formulas.read(formula, &mut Operands(parts));
+    let value = read.map_err(|fault| {
+        let hint = fault.hint.map_or_else(String::new, |hint| format!("; {hint}"));
+        error::input(format!("{}{hint}", fault.message))
+    })?;
+    let [part] = value.parts[..] else {
+        return Err(error::input(format!("`{formula}` is a vector, and a law computes with numbers")));
+    };
+    match (traced, formulas.known(part)) {
+        (None, Some(value)) => Ok(value.into_pyobject(py)?.into_any()),
+        _ => {
+            drop(formulas);
+            Ok(Bound::new(py, Number { tracing, part })?.into_any())
+        }
+    }
+}
+
+type Operated<'py> = PyResult<Bound<'py, PyAny>>;
+
+/// An operator; numpy, not this class, sees to arrays.
+fn operated<'py>(number: &Bound<'py, Number>, other: &Bound<'py, PyAny>, formula: &str) -> Operated<'py> {
+    let py = number.py();
+    if other.cast::<Number>().is_err() && other.extract::<f64>().is_err() {
+        return Ok(py.NotImplemented().into_bound(py));
+    }
+    compute(py, formula, &[number.clone().into_any(), other.clone()])
+}
+
+#[pymethods]
+impl Number {
+    fn __add__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 + a1")
+    }
+
+    fn __radd__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a1 + a0")
+    }
+
+    fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 - a1")
+    }
+
+    fn __rsub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a1 - a0")
+    }
+
+    fn __mul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 * a1")
+    }
+
+    fn __rmul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a1 * a0")
+    }
+
+    fn __truediv__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 / a1")
+    }
+
+    fn __rtruediv__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a1 / a0")
+    }
+
+    fn __pow__<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        modulo: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if !modulo.is_none() {
+            return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
+        }
+        power(slf.py(), slf.as_any(), other)
+    }
+
+    fn __neg__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "-a0", &[slf.clone().into_any()])
+    }
+
+    fn __pos__<'py>(slf: &Bound<'py, Self>) -> Bound<'py, Self> {
+        slf.clone()
+    }
+
+    fn __abs__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "abs(a0)", &[slf.clone().into_any()])
+    }
+
+    fn __lt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "a0 < a1", &[slf.clone().into_any(), other.clone()])
+    }
+
+    fn __le__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "a0 <= a1", &[slf.clone().into_any(), other.clone()])
+    }
+
+    fn __gt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "a0 > a1", &[slf.clone().into_any(), other.clone()])
+    }
+
+    fn __ge__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "a0 >= a1", &[slf.clone().into_any(), other.clone()])
+    }
+
+    fn __bool__(&self) -> PyResult<bool> {
+        Err(PyTypeError::new_err(
+            "a law is traced once and does not branch on values: write hwasp.where(condition, yes, no), hwasp.minimum, \
+             hwasp.maximum or hwasp.clip",
+        ))
+    }
+
+    fn __float__(&self) -> PyResult<f64> {
+        Err(PyTypeError::new_err(
+            "a law is traced once, and its numbers have no values then: use hwasp.sin and the like, or numpy's, in place of \
+             math's",
+        ))
+    }
+
+    #[pyo3(signature = (ufunc, method, *inputs, **options))]
+    fn __array_ufunc__<'py>(
+        slf: &Bound<'py, Self>,
+        ufunc: &Bound<'py, PyAny>,
+        method: &str,
+        inputs: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let laws = PyModule::import(slf.py(), "hwasp.laws")?;
+        laws.call_method1("_ufunc", (ufunc, method, inputs, options))
+    }
+
+    fn clip<'py>(
+        slf: &Bound<'py, Self>,
+        low: &Bound<'py, PyAny>,
+        high: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        compute(slf.py(), "clip(a0, a1, a2)", &[slf.clone().into_any(), low.clone(), high.clone()])
+    }
+
+    fn __repr__(&self) -> String {
+        match lock(&self.tracing).known(self.part) {
+            Some(value) => format!("Number({value})"),
+            None => "Number(traced)".to_owned(),
+        }
+    }
+
+    /// A formula over `a0`, `a1` and so on, in the language of experiments.
+    #[staticmethod]
+    #[pyo3(signature = (formula, *operands))]
+    fn compute<'py>(py: Python<'py>, formula: &str, operands: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
+        compute(py, formula, &operands.iter().collect::<Vec<_>>())
+    }
+}
+
+/// A power whose exponent is a plain number, or any of a positive base.
+fn power<'py>(py: Python<'py>, base: &Bound<'py, PyAny>, exponent: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    match exponent.extract::<f64>() {
+        Ok(exponent) => compute(py, &format!("a0^({exponent:?})"), std::slice::from_ref(base)),
+        Err(_) => compute(py, "exp(a1 * log(a0))", &[base.clone(), exponent.clone()]),
+    }
+}
+
+/// A law of the hardware: design space, names, and the program.
+#[pyclass(frozen, module = "hwasp")]
+#[derive(Clone)]
+pub(crate) struct Law {
+    pub(crate) law: CoreLaw,
+    formulas: Formulas,
+    outputs: Vec<Part>,
+}
+
+/// A group of design parameters: name, unit, lower and upper limit, count, start.
+type Group = (String, String, f64, f64, usize, Option<f64>);
+
+/// What a unit measures.
+pub(crate) fn dimension(symbol: &str) -> PyResult<Dimension> {
+    let dotted = symbol.replace('*', "·");
+    unit(&dotted).filter(|unit| unit.to_si == 1.0).map(|unit| unit.dimension).ok_or_else(|| {
+        let known: Vec<&str> =
+            Dimension::ALL.iter().map(|dimension| dimension.si()).filter(|si| !si.is_empty()).collect();
+        error::input(format!("`{symbol}` is no unit of a law; they are SI: {}", known.join(", ")))
+    })
+}
+
+/// Traces a law: `function` is called once with lists of traced numbers (design, commands, states) and gives the efforts.
+#[pyfunction]
+pub(crate) fn trace<'py>(
+    py: Python<'py>,
+    function: &Bound<'py, PyAny>,
+    design: Vec<Group>,
+    command: Vec<String>,
+    state: Vec<String>,
+    effort: Vec<String>,
+) -> PyResult<Law> {
+    let group = |(name, unit, lo, hi, count, initial): Group| {
+        let initial = initial.map_or(Initial::Value(0.5 * (lo + hi)), Initial::Value);
+        Ok(DesignGroup { name, dimension: dimension(&unit)?, lo, hi, count, initial })
+    };
+    let groups = design.into_iter().map(group).collect::<PyResult<Vec<_>>>()?;
+    let space = DesignSpace::new(groups).map_err(Wrong::input)?;
+    let tracing = Tracing::default();
+    let number = |part| Bound::new(py, Number { tracing: Arc::clone(&tracing), part });
+    let uniform = (0..space.len()).map(|i| number(lock(&tracing).uniform(i))).collect::<PyResult<Vec<_>>>()?;
+    let columns = (0..command.len() + state.len()).map(|i| number(lock(&tracing).column(i)));
+    let mut columns = columns.collect::<PyResult<Vec<_>>>()?;
+    let states = columns.split_off(command.len());
+    let efforts: Vec<Bound<'py, PyAny>> = function.call1((uniform, columns, states))?.extract()?;
+    if efforts.len() != effort.len() {
+        let (given, needed) = (efforts.len(), effort.len());
+        return Err(error::input(format!("the law gives {given} efforts, and names {needed}: {}", effort.join(", "))));
+    }
+    let mut outputs = Vec::with_capacity(efforts.len());
+    for (given, name) in efforts.iter().zip(&effort) {
+        outputs.push(match (given.cast::<Number>(), given.extract::<f64>()) {
+            (Ok(number), _) if Arc::ptr_eq(&number.get().tracing, &tracing) => number.get().part,
+            (Ok(_), _) => return Err(PyValueError::new_err("numbers of two laws must not be mixed")),
+            (_, Ok(value)) => lock(&tracing).constant(value),
+            _ => return Err(PyTypeError::new_err(format!("the effort {name} is {}, no number", kind(given)))),
+        });
+    }
+    let formulas = lock(&tracing).clone();
+    let columns: Vec<String> = command.iter().chain(&state).cloned().collect();
+    let named = effort.iter().cloned().zip(outputs.iter().copied()).collect();
+    let program = formulas.program(&space.names(), &columns, named);
+    let law = CoreLaw::from_program(program, space, Ports { command, state, effort }).map_err(Wrong::input)?;
+    Ok(Law { law, formulas, outputs })
+}
+
+/// A batch of rows.
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+/// Derivatives by design, commands and states.
+type Cotangents<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+impl Law {
+    /// Inputs as a program reads them: column after column.
+    fn columns(&self, design: &[f64], command: &Rows<'_>, state: &Rows<'_>) -> PyResult<(Vec<f64>, usize)> {
+        let (ports, needed) = (self.law.ports(), self.law.design().len());
+        if design.len() != needed {
+            return Err(error::input(format!(
+                "the design has {} values, and the law {needed} parameters",
+                design.len()
+            )));
+        }
+        let (command, state) = (command.as_array(), state.as_array());
+        let rows = command.nrows();
+        for (what, found, names) in [("command", &command, &ports.command), ("state", &state, &ports.state)] {
+            if found.shape() != [rows, names.len()] {
+                let shape = found.shape();
+                let message = format!("{what} has the shape {shape:?}; the law reads ({rows}, {})", names.len());
+                return Err(error::input(message));
+            }
+        }
+        let columns = command.columns().into_iter().chain(state.columns());
+        Ok((columns.flat_map(|column| column.to_vec()).collect(), rows))
+    }
+}
+
+#[pymethods]
+impl Law {
+    /// Efforts `[rows, E]` at one design and rows of commands and states, SI.
+    fn efforts<'py>(
+        &self,
+        py: Python<'py>,
+        design: Vec<f64>,
+        command: Rows<'py>,
+        state: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (columns, rows) = self.columns(&design, &command, &state)?;
+        let (program, outputs) = (self.law.program(), self.outputs.len());
+        let mut effort = vec![0.0; outputs * rows];
+        let mut tape = program.tape::<f64>(rows.max(1));
+        program.bind(&design, &mut tape);
+        program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
+        by_rows(py, &effort, outputs, rows)
+    }
+
+    /// The way back: from cotangents of the efforts `[rows, E]` to those of design (summed over rows), commands and states.
+    fn pullback<'py>(
+        &self,
+        py: Python<'py>,
+        design: Vec<f64>,
+        command: Rows<'py>,
+        state: Rows<'py>,
+        cotangent: Rows<'py>,
+    ) -> PyResult<Cotangents<'py>> {
+        let (columns, rows) = self.columns(&design, &command, &state)?;
+        let (program, outputs) = (self.law.program(), self.outputs.len());
+        let cotangent = cotangent.as_array();
+        if cotangent.shape() != [rows, outputs] {
+            let shape = cotangent.shape();
+            return Err(error::input(format!(
+                "the cotangent has the shape {shape:?}; the law gives ({rows}, {outputs})"
+            )));
+        }
+        let cotangent: Vec<f64> = cotangent.columns().into_iter().flat_map(|column| column.to_vec()).collect();
+        let mut tape = program.tape::<f64>(rows.max(1));
+        program.bind(&design, &mut tape);
+        let mut effort = vec![0.0; outputs * rows];
+        program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
+        let mut back = vec![0.0; columns.len()];
+        program.vjp(&columns, rows, rows, &cotangent, rows, &mut tape, &mut back, rows);
+        let mut by_design = vec![0.0; design.len()];
+        program.vjp_uniform(&mut tape, &mut by_design);
+        let (commands, states) = (self.law.ports().command.len(), self.law.ports().state.len());
+        let (by_command, by_state) = back.split_at(commands * rows);
+        Ok((
+            PyArray1::from_vec(py, by_design),
+            by_rows(py, by_command, commands, rows)?,
+            by_rows(py, by_state, states, rows)?,
+        ))
+    }
+
+    /// Compares the derivatives with finite differences; returns the largest relative error.
+    fn gradcheck(&self, design: Vec<f64>, command: Rows<'_>, state: Rows<'_>) -> PyResult<f64> {
+        let (columns, _) = self.columns(&design, &command, &state)?;
+        let checked = gradcheck(self.law.program(), &design, &columns, &GradCheckSettings::default());
+        Ok(checked.map_err(Wrong::input)?.max_relative_error)
+    }
+
+    /// The computational graph as SVG.
+    fn svg(&self) -> String {
+        self.law.program().to_svg()
+    }
+
+    /// As text: definitions, and a formula for each effort.
+    fn text(&self) -> (Vec<(String, String)>, Vec<String>) {
+        let ports = self.law.ports();
+        let columns: Vec<String> = ports.command.iter().chain(&ports.state).cloned().collect();
+        let texts = self.formulas.text(&self.law.design().names(), &columns, "law_", &self.outputs);
+        (texts.definitions, texts.formulas)
+    }
+}
+
+/// Columns, one after the other, as an array of rows.
+fn by_rows<'py>(py: Python<'py>, columns: &[f64], width: usize, rows: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let at = |row: usize| (0..width).map(move |column| columns[column * rows + row]);
+    PyArray1::from_iter(py, (0..rows).flat_map(at)).reshape([rows, width])
+}

@@ -1,0 +1,233 @@
+"""The problems as Gymnasium environments: one at a time, and many at once."""
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from gymnasium.vector import AutoresetMode
+
+from . import _hwasp
+from .errors import InputError
+from .experiments import Experiment
+
+__all__ = ["Env", "VectorEnv"]
+
+
+class _Stepped:
+    """What both have: an experiment, its episodes, and the spaces that follow."""
+
+    def _open(self, experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress):
+        if world not in ("training", "deployment"):
+            raise InputError(f"world = {world!r}; it is 'training' or 'deployment'")
+        experiment = Experiment.load(experiment)
+        if settings:
+            experiment = experiment.set(settings)
+        if method is None:
+            # Another learner cannot follow a gradient through the law: it has the design in its actions.
+            method = {"hwasp": "minimal", "minimal": "minimal", "episode": "episode"}.get(experiment.method, "fixed")
+        self.experiment = experiment.set(method=method)
+        self._episodes = _hwasp.Episodes(
+            self.experiment._native,
+            lanes=num_envs,
+            threads=threads,
+            deployment=world == "deployment",
+            scale_actions=scale_actions,
+            scale_observations=scale_observations,
+            progress=progress,
+        )
+        ports = self._episodes.actions()
+        self.action_names = [name for name, _ in ports]
+        self.observation_names = [name for name, _ in self._episodes.observation_ports()]
+        scaled = lambda limits: (-1.0, 1.0) if scale_actions else limits
+        low, high = zip(*[(-np.inf, np.inf) if limits is None else scaled(limits) for _, limits in ports])
+        action = spaces.Box(np.array(low, np.float32), np.array(high, np.float32), dtype=np.float32)
+        return spaces.Box(-np.inf, np.inf, (len(self.observation_names),), np.float32), action
+
+    def _seed(self):
+        """The seed of whoever was given none."""
+        return int(self.np_random.integers(2**31))
+
+    def _designed(self, lane, design):
+        """Builds the hardware of a lane to a design: a dict by the names of parameters, or all of them in order."""
+        if isinstance(design, dict):
+            names = [name for name, _, _ in self._episodes.parameters()]
+            values = dict(zip(names, self._episodes.design(lane)))
+            for name, value in design.items():
+                own = [known for known in names if known == name or known.startswith(f"{name}[")]
+                if not own:
+                    raise InputError(f"there is no design parameter {name!r}; these are {', '.join(names)}")
+                for known, x in zip(own, np.broadcast_to(np.asarray(value, float), len(own))):
+                    values[known] = x
+            design = list(values.values())
+        self._episodes.build(lane, np.asarray(design, float).tolist())
+
+    @property
+    def dt(self):
+        """Time of a step, s."""
+        return self._episodes.time_step
+
+    def set_progress(self, progress):
+        """Says how much of a training is done, 0 to 1, to worlds that begin easier; it counts from the next starts on."""
+        self._episodes.set_progress(float(progress))
+
+
+class Env(_Stepped, gymnasium.Env):
+    """One environment of an experiment, with the law of the hardware in it.
+
+    - `experiment`: a name, a file, a dict, or an `Experiment`; `settings` are set in it.
+    - `method`: where the design is. `"minimal"` (the default where something is designed): part of each action; `"episode"`: part
+      of the action too, but only the first action of an episode counts, and is held; `"fixed"`: nowhere; `"hwasp"`: in the graph,
+      so that actions are the efforts of the law, which `hwasp.Law` or a learner of this package differentiates.
+    - `world`: `"training"`, or `"deployment"`, where evaluations happen.
+    - `scale_actions`: actions are from -1 to 1 between their limits; else they are in SI.
+    - `scale_observations`: observations are centred and scaled as the experiment's controller sees them; else they are in SI.
+    - `progress`: how much of a training is done, for worlds that begin easier.
+
+    `reset(seed=s)` starts the first episode of a training with seed s, and each further `reset()` the next one.
+    `options={"design": {"stiffness": 3.0}}` builds the hardware to another design, SI, from this start on. The last info of an
+    episode has `is_success`, `ended_by`, `terms` of the reward and `fault`, where the world knows them.
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, experiment, *, method=None, settings=None, world="training", scale_actions=True,
+                 scale_observations=True, progress=1.0, render_mode=None):  # fmt: skip
+        if render_mode is not None:
+            raise InputError(f"render_mode = {render_mode!r}; pictures are drawn by `hwasp play`, and here there are none")
+        self.observation_space, self.action_space = self._open(
+            experiment, 1, 1, method, settings, world, scale_actions, scale_observations, progress
+        )
+        self._options = dict(world=world, scale_actions=scale_actions, scale_observations=scale_observations, progress=progress)
+        width = self.observation_space.shape
+        self._observation = np.empty((1, *width), np.float32)
+        self._reward, self._terminated, self._truncated = np.empty(1), np.empty(1, bool), np.empty(1, bool)
+        self._seeded = False
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        if options and "design" in options:
+            self._designed(0, options["design"])
+        if seed is None and not self._seeded:
+            seed = self._seed()
+        self._seeded = True
+        return self._episodes.reset([seed], None)[0], {}
+
+    def step(self, action):
+        action = np.asarray(action)
+        ended = self._episodes.step(
+            action[None], False, False, self._observation, self._reward, self._terminated, self._truncated
+        )
+        info = self._episodes.ending(0) if ended else {}
+        return (
+            self._observation[0].copy(),
+            float(self._reward[0]),
+            bool(self._terminated[0]),
+            bool(self._truncated[0]),
+            info,
+        )
+
+    def close(self):
+        if hasattr(self, "_episodes"):
+            self._episodes.close()
+
+    @property
+    def design(self):
+        """The design of the episode by the names of parameters, SI."""
+        names = [name for name, _, _ in self._episodes.parameters()]
+        return dict(zip(names, self._episodes.design(0).tolist()))
+
+    @property
+    def state(self):
+        """What the law reads of the world, SI, by name."""
+        return self._episodes.state(0)
+
+    def __reduce__(self):
+        return (_env, (self.experiment, self._options))
+
+
+def _env(experiment, options):
+    return Env(experiment, method=experiment.method, **options)
+
+
+class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
+    """Many environments of an experiment, stepped in Rust by `threads` threads (all cores where none is given).
+
+    The options of `Env` apply. `autoreset_mode` is Gymnasium's: `NEXT_STEP` (the default), `SAME_STEP`, with `final_obs` and
+    `final_info` in the info, or `DISABLED`, where `reset(options={"reset_mask": mask})` starts the lanes of a mask. Environment i has
+    the seed `seed + i`, and gives the bits of an `Env` with that seed, for any number of threads.
+
+    Arrays are new ones in each step; with `copy=False` they are the same ones, written anew.
+    """
+
+    def __init__(self, experiment, num_envs, *, threads=None, autoreset_mode=AutoresetMode.NEXT_STEP, copy=True, method=None,
+                 settings=None, world="training", scale_actions=True, scale_observations=True, progress=1.0,
+                 render_mode=None):  # fmt: skip
+        if render_mode is not None:
+            raise InputError(f"render_mode = {render_mode!r}; many environments are not drawn")
+        autoreset_mode = AutoresetMode(autoreset_mode)
+        if threads is None:
+            threads = _cores()
+        self.single_observation_space, self.single_action_space = self._open(
+            experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress
+        )
+        batch = gymnasium.vector.utils.batch_space
+        self.num_envs = num_envs
+        self.observation_space = batch(self.single_observation_space, num_envs)
+        self.action_space = batch(self.single_action_space, num_envs)
+        self.autoreset_mode, self._copy = autoreset_mode, copy
+        self.metadata = {"render_modes": [], "autoreset_mode": autoreset_mode}
+        self._arrays = self._new_arrays()
+        self._seeded = False
+
+    def _new_arrays(self):
+        n = self.num_envs
+        observation = np.empty(self.observation_space.shape, np.float32)
+        return observation, np.empty(n), np.empty(n, bool), np.empty(n, bool)
+
+    def reset(self, *, seed=None, options=None):
+        n, options = self.num_envs, options or {}
+        first = seed if isinstance(seed, (int, np.integer)) else None
+        super().reset(seed=None if first is None else int(first))
+        if seed is None and not self._seeded:
+            first = self._seed()
+        if first is not None:
+            seeds = [int(first) + i for i in range(n)]
+        else:
+            seeds = [None] * n if seed is None else list(seed)
+        mask = options.get("reset_mask")
+        if mask is not None:
+            mask = np.asarray(mask, bool).tolist()
+        for i in range(n) if "design" in options else ():
+            self._designed(i, options["design"])
+        self._seeded = True
+        return self._episodes.reset(seeds, mask), {}
+
+    def step(self, actions):
+        arrays = self._new_arrays() if self._copy else self._arrays
+        same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
+        ended = self._episodes.step(
+            actions, self.autoreset_mode is AutoresetMode.NEXT_STEP, same_step, *arrays
+        )
+        infos = {}
+        for i in ended:
+            told = self._episodes.ending(i)
+            if same_step:
+                told = {"final_obs": self._episodes.last(i), "final_info": told}
+            infos = self._add_info(infos, told, i)
+        if same_step and ended:
+            self._episodes.go_on(ended, arrays[0])
+        return (*arrays, infos)
+
+    def close_extras(self, **kwargs):
+        if hasattr(self, "_episodes"):
+            self._episodes.close()
+
+    def design(self, i=0):
+        """The design of environment `i` by the names of parameters, SI."""
+        names = [name for name, _, _ in self._episodes.parameters()]
+        return dict(zip(names, self._episodes.design(i).tolist()))
+
+
+def _cores():
+    import os
+
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,302 @@
+"""Experiments, the runs that they become, and comparisons."""
+
+import html
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import _hwasp
+from ._progress import watcher
+from .policy import Policy
+
+__all__ = ["Comparison", "DesignGroup", "Experiment", "Metrics", "Run", "compare"]
+
+
+class Experiment:
+    """What is trained, in which world, by what learner: every setting of an experiment file.
+
+    It never changes; `set` gives another one. `str(experiment)` is the file with every setting in its place.
+    """
+
+    def __init__(self, native):
+        self._native = native
+
+    @classmethod
+    def load(cls, what):
+        """An experiment by the name of one that comes along (`hwasp.experiments()`), from a TOML file, or from a dict.
+
+        A dict has the tables of a file: `{"name": "mine", "task": {"problem": "reach"}, "train": {"env_steps": 100_000}}`.
+        """
+        return cls(_hwasp.Experiment.load(what._native if isinstance(what, Experiment) else what))
+
+    def set(self, settings=None, /, **more):
+        """The same with other settings, by their keys in files.
+
+        >>> Experiment.load("reach").set({"ppo.clip_ratio": 0.1, "task.goal": "30 cm"}, seed=3, method="minimal").seed
+        3
+        """
+        return type(self)(self._native.set(settings, **more))
+
+    def check(self):
+        """Tries the world with random commands and designs, and tells what is in the experiment; raises `InputError` with
+        every fault at once."""
+        return Text(self._native.check())
+
+    def train(self, out=None, *, seed=None, env_steps=None, threads=1, callback=None, begin_with=(), progress=True,
+              checkpoint_every=30.0, tensorboard=False):  # fmt: skip
+        """Trains, and returns the `Run`. The same experiment and seed give the same bits as the command `hwasp train`.
+
+        - `out`: the run folder; a new one under `runs/` where there is none.
+        - `seed`, `env_steps`: as in the experiment, unless given.
+        - `threads`: for episodes; they do not change the result.
+        - `callback`: called with a dict for each iteration, the columns of `metrics.csv` by name. Where it returns `False` the
+          training stops; `Run.resume` goes on.
+        - `begin_with`: runs whose parameters it begins with.
+        - `progress`: shows a bar, on a terminal and in a notebook.
+        - `checkpoint_every`: s between two checkpoints, at least.
+        - `tensorboard`: writes the curves for TensorBoard as well.
+
+        Ctrl-C finishes the iteration, keeps a checkpoint, and raises `KeyboardInterrupt`; a second one does not wait.
+        """
+        more = {key: value for key, value in [("seed", seed), ("train.env_steps", env_steps)] if value is not None}
+        begin_with = [begin_with] if isinstance(begin_with, (str, os.PathLike, Run)) else list(begin_with)
+        watch = watcher(progress, callback)
+        try:
+            native = self._native.set(more).train(
+                out=None if out is None else os.fspath(out),
+                learned=[os.fspath(run) for run in begin_with],
+                threads=threads,
+                checkpoint_every=checkpoint_every,
+                tensorboard=tensorboard,
+                watch=watch,
+            )
+        finally:
+            watch.close()
+        return Run(native)
+
+    @property
+    def name(self):
+        """What it is called."""
+        return self._native.name
+
+    @property
+    def method(self):
+        """How learner, controller and hardware are composed: `"hwasp"`, `"minimal"`, `"episode"`, `"fixed"` and others."""
+        return self._native.method
+
+    @property
+    def seed(self):
+        """The root of all random numbers."""
+        return self._native.seed
+
+    def to_dict(self):
+        """Every setting, as the tables of a file."""
+        return self._native.to_dict()
+
+    def to_toml(self):
+        """Every setting, as a file."""
+        return self._native.to_toml()
+
+    __str__ = to_toml
+
+    def __repr__(self):
+        return repr(self._native)
+
+    def __reduce__(self):
+        # With all files that it names: what is on the disk may be something else by then.
+        return (_restored, self._native.packed())
+
+
+def _restored(text, files):
+    return Experiment(_hwasp.Experiment.unpacked(text, files))
+
+
+class Text(str):
+    """A text that shows its lines where a value is shown."""
+
+    __slots__ = ()
+
+    def __repr__(self):
+        return str(self)
+
+
+@dataclass(frozen=True)
+class DesignGroup:
+    """A group of design parameters: arrays of values as trained and as they are to be built, in the SI unit `unit`."""
+
+    name: str
+    unit: str
+    limits: tuple
+    values: object
+    as_built: object
+    optimum: float | None
+
+    @property
+    def total(self):
+        """The sum of the values as trained."""
+        return float(self.values.sum())
+
+    def __repr__(self):
+        values = ", ".join(f"{value:.4g}" for value in self.as_built[:8]) + (", …" if len(self.as_built) > 8 else "")
+        total = f" (total {self.total:.4g})" if len(self.values) > 1 else ""
+        return f"{values}{' ' + self.unit if self.unit else ''}{total}"
+
+
+class Metrics(dict):
+    """A learning curve: numpy arrays by the names of the columns of `metrics.csv`."""
+
+    def to_pandas(self):
+        """The same as a frame of pandas."""
+        import pandas
+
+        return pandas.DataFrame(dict(self))
+
+
+class Run:
+    """What a training left in its folder."""
+
+    def __init__(self, native):
+        self._native = native
+
+    @classmethod
+    def open(cls, path):
+        """The run in a folder, finished or not."""
+        return cls(_hwasp.Run.open(os.fspath(path)))
+
+    @property
+    def path(self):
+        """The folder."""
+        return Path(self._native.path)
+
+    def __fspath__(self):
+        return os.fspath(self._native.path)
+
+    @property
+    def finished(self):
+        """Whether the training came to its end. The others have the design and policy of their newest checkpoint."""
+        return self._native.finished
+
+    @property
+    def experiment(self):
+        """The experiment, with every setting."""
+        return Experiment(self._native.experiment)
+
+    @property
+    def design(self):
+        """The groups of design parameters by name, each a `DesignGroup`."""
+        return {name: DesignGroup(name, **group) for name, group in self._native.groups().items()}
+
+    @property
+    def metrics(self):
+        """The learning curve, a `Metrics`: arrays by name."""
+        return Metrics(self._native.columns())
+
+    @property
+    def summary(self):
+        """The figures of `summary.json` as a dict."""
+        return self._native.summary
+
+    @property
+    def policy(self):
+        """The deterministic controller on the design as built, a `Policy`."""
+        return Policy(self._native.policy)
+
+    @property
+    def params(self):
+        """All parameters of the policy as one vector; `policy.state_dict()` has them by name."""
+        return self._native.params
+
+    def evaluate(self, episodes=None, *, seed=None, settings=None, native=False, threads=1):
+        """Evaluates the design as built on starts that no training sees; a dict of figures with 95 % intervals.
+
+        - `episodes`, `seed`: as the experiment says, unless given.
+        - `settings`: other values of the experiment, by key, to see what the result is worth in another world.
+        - `native`: in the world that stands in for the built robot, where there is one.
+        """
+        settings = [f"{key}={_assigned(value)}" for key, value in (settings or {}).items()]
+        return self._native.evaluation(
+            episodes=episodes, seed=seed, settings=settings, native=native, threads=threads
+        )
+
+    def export(self, out=None, kinds=(), samples=None):
+        """Writes files for other programs (ONNX, safetensors, JSON; of a hand MJCF, URDF, STL and more); returns their paths.
+
+        `kinds` are the names of `hwasp export`; all that the run has where none is given.
+        """
+        kinds = [kinds] if isinstance(kinds, str) else list(kinds)
+        out = None if out is None else os.fspath(out)
+        return [Path(path) for path in self._native.exported(out, kinds, samples)]
+
+    def report(self, out=None):
+        """Writes the report, one HTML page that loads nothing, and returns its path."""
+        out = Path(self.path / "report.html" if out is None else out)
+        out.write_text(self._native.html(), encoding="utf-8")
+        return out
+
+    def resume(self, *, threads=1, callback=None, progress=True, checkpoint_every=30.0, tensorboard=False):
+        """Goes on with a training that was interrupted: the result has the bits of one that never was."""
+        watch = watcher(progress, callback)
+        try:
+            native = self._native.resumed(
+                threads=threads, checkpoint_every=checkpoint_every, tensorboard=tensorboard, watch=watch
+            )
+        finally:
+            watch.close()
+        return Run(native)
+
+    def __repr__(self):
+        design = "; ".join(f"{name} {group!r}" for name, group in self.design.items())
+        state = "" if self.finished else ", not finished"
+        return f"Run({str(self.path)!r}{state}; {design or 'nothing designed'})"
+
+    def _repr_html_(self):
+        if not self.finished:
+            return f"<code>{html.escape(repr(self))}</code>"
+        page = html.escape(self._native.html(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 40em; border: 1px solid #ccc"></iframe>'
+
+
+def _assigned(value):
+    """A value as `--set` takes it."""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+class Comparison:
+    """Methods against each other, in a folder: `table` as Markdown, `figures` as `comparison.json` has them."""
+
+    def __init__(self, path, table):
+        self.path, self.table = Path(path), Text(table)
+
+    @property
+    def figures(self):
+        """The figures of `comparison.json`."""
+        return json.loads((self.path / "comparison.json").read_text())
+
+    def __repr__(self):
+        return self.table
+
+    def _repr_markdown_(self):
+        return str(self.table)
+
+
+def compare(experiment, methods=("hwasp", "minimal", "fixed"), *, seeds=3, first_seed=0, out=None, threads=None,
+            threshold=None):  # fmt: skip
+    """Trains methods against each other under one budget of simulator steps, several seeds each; returns a `Comparison`.
+
+    `methods` are those of `hwasp compare`: `"cmaes"`, `"ars-rl"`, `"fixed:middle"` and so on. What is finished in `out` stays as it
+    is; a comparison that was stopped goes on with the same call.
+    """
+    experiment = Experiment.load(experiment)
+    out = Path("runs") / f"compare-{experiment.name}" if out is None else Path(out)
+    methods = [methods] if isinstance(methods, str) else list(methods)
+    table = _hwasp.compare(
+        experiment._native,
+        methods=methods,
+        seeds=seeds,
+        first_seed=first_seed,
+        out=os.fspath(out),
+        threads=os.cpu_count() or 1 if threads is None else threads,
+        threshold=threshold,
+    )
+    return Comparison(out, table)

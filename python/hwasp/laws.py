@@ -1,0 +1,243 @@
+"""Laws of the hardware, written in Python: traced once, and from then on the same as a law in Rust or as text."""
+
+from dataclasses import dataclass
+from functools import update_wrapper
+
+import re
+
+from ._hwasp import Number, trace
+
+__all__ = ["Law", "Parameter", "law"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A group of design parameters.
+
+    `limits` are in the SI unit `unit` (`"N/m"`; empty for pure numbers). It begins at `initial`, in the middle where that is
+    None. With a `count` above 1 the law gets a list of as many numbers.
+    """
+
+    limits: tuple[float, float]
+    unit: str = ""
+    initial: float | None = None
+    count: int = 1
+
+
+class _Named:
+    """Traced numbers by name: as attributes, by `[name]`, and by their place."""
+
+    def __init__(self, values):
+        self._values = values
+
+    def __getattr__(self, name):
+        try:
+            return self._values[name]
+        except KeyError:
+            raise AttributeError(f"there is no `{name}` here, but {', '.join(self._values) or 'nothing'}") from None
+
+    def __getitem__(self, key):
+        if isinstance(key, str):
+            return getattr(self, key)
+        return list(self._values.values())[key]
+
+    def __iter__(self):
+        return iter(self._values.values())
+
+    def __len__(self):
+        return len(self._values)
+
+
+def law(*, design=None, command, state=(), effort):
+    """Makes a law of a function `f(design, command, state)` that gives the efforts.
+
+    - `design`: parameters by name, each a `Parameter` or its limits `(low, high)`.
+    - `command`: names of what the controller asks of the motors, or limits by name, `{"torque": (-1, 1)}`.
+    - `state`: names of what the law reads of the world.
+    - `effort`: the name, or names, of what the mechanism does to the world.
+
+    The function is called once, with traced numbers. It computes with `+ - * / **`, with `hwasp.sin` and the like or numpy's
+    functions, and may loop over lists. It must not branch on values: `hwasp.where` chooses. It returns the effort, a sequence
+    of efforts in their order, or a dict.
+
+    >>> @law(design={"stiffness": Parameter((1, 9), "N/m")}, command=["pull"], state=["position"], effort="force")
+    ... def spring(design, command, state):
+    ...     return command.pull - design.stiffness * state.position
+    >>> spring.effort([4.0], [1.0], [0.5]).tolist()
+    [-1.0]
+    """
+
+    def decorate(function):
+        return Law(function, design=design or {}, command=command, state=state, effort=effort)
+
+    return decorate
+
+
+class Law:
+    """A law of the hardware; `law` makes one."""
+
+    def __init__(self, function, *, design, command, state, effort):
+        parameters = {name: p if isinstance(p, Parameter) else Parameter(tuple(p)) for name, p in design.items()}
+        limits = dict(command) if isinstance(command, dict) else {name: None for name in _names(command)}
+        states, efforts = _names(state), _names(effort)
+
+        def traced(uniforms, commands, columns):
+            uniforms = iter(uniforms)
+            groups = {}
+            for name, parameter in parameters.items():
+                numbers = [next(uniforms) for _ in range(parameter.count)]
+                groups[name] = numbers[0] if parameter.count == 1 else numbers
+            given = function(
+                _Named(groups), _Named(dict(zip(limits, commands))), _Named(dict(zip(states, columns)))
+            )
+            if isinstance(given, dict):
+                missing = [name for name in efforts if name not in given]
+                if missing or len(given) != len(efforts):
+                    raise ValueError(f"the law gives {', '.join(given)}, and its efforts are {', '.join(efforts)}")
+                return [given[name] for name in efforts]
+            return list(given) if isinstance(given, (list, tuple)) or hasattr(given, "__len__") else [given]
+
+        groups = [(n, p.unit, *map(float, p.limits), p.count, p.initial) for n, p in parameters.items()]
+        self._law = trace(traced, groups, list(limits), states, efforts)
+        self.parameters = parameters
+        self.command_limits = limits
+        self.command, self.state_names, self.effort_names = list(limits), states, efforts
+        update_wrapper(self, function)
+
+    def effort(self, design, command, state=None):
+        """Efforts at one design and one row `(C,)`, `(S,)` of commands and states, or rows of them `(B, C)`, `(B, S)`; SI.
+
+        A design is a list with one value for each parameter, or a dict by the names of groups.
+        """
+        rows = self._rows(command, state)
+        efforts = self._law.efforts(self._design(design), *rows)
+        return efforts if _is_batch(command) else efforts[0]
+
+    def vjp(self, design, command, state, cotangent):
+        """The way back: cotangents by the design `(U,)` (summed over rows), by commands and by states, from those of efforts.
+
+        It is what an automatic differentiation of another library needs, `torch.autograd.Function.backward` for one.
+        """
+        import numpy as np
+
+        cotangent = np.atleast_2d(np.asarray(cotangent, "float64"))
+        by_design, by_command, by_state = self._law.pullback(
+            self._design(design), *self._rows(command, state), cotangent
+        )
+        if _is_batch(command):
+            return by_design, by_command, by_state
+        return by_design, by_command[0], by_state[0]
+
+    def gradcheck(self, design, command, state=None):
+        """Compares the derivatives with finite differences at a point; returns the largest relative error, or raises."""
+        return self._law.gradcheck(self._design(design), *self._rows(command, state))
+
+    def graph(self):
+        """The computational graph as SVG; a notebook shows a law by it."""
+        return self._law.svg()
+
+    _repr_svg_ = graph
+
+    def settings(self, prefix="joint."):
+        """The same law as settings of an experiment with the problem `model`, for `Experiment.set`.
+
+        Its commands, states and efforts have to be called as formulas call them, `joint.knee.pos` for one; commands without a
+        dot are `command.NAME`, and efforts without one `prefix` and their name.
+        """
+        definitions, formulas = self._law.text()
+        known = {name: f"command.{name}" for name in self.command if "." not in name}
+        swap = _Renaming(known)
+        effort = lambda name: name if "." in name else prefix + name
+        return {
+            "task.define": {name: swap(text) for name, text in definitions},
+            "task.law": {effort(name): swap(text) for name, text in zip(self.effort_names, formulas)},
+            "task.design": {name: _table(parameter) for name, parameter in self.parameters.items()},
+        }
+
+    def __repr__(self):
+        design = ", ".join(self.parameters) or "nothing designed"
+        return f"Law({design}; {', '.join(self.command + self.state_names)} to {', '.join(self.effort_names)})"
+
+    def _design(self, design):
+        if not isinstance(design, dict):
+            return [float(value) for value in design]
+        if set(design) != set(self.parameters):
+            raise ValueError(f"the design has {', '.join(design)}, and the law {', '.join(self.parameters)}")
+        values = []
+        for name in self.parameters:
+            value = design[name]
+            values.extend(map(float, value) if hasattr(value, "__len__") else [float(value)])
+        return values
+
+    def _rows(self, command, state):
+        import numpy as np
+
+        command = np.atleast_2d(np.asarray(command, "float64"))
+        if state is None:
+            state = np.zeros((len(command), 0))
+        return command, np.atleast_2d(np.asarray(state, "float64"))
+
+
+class _Renaming:
+    """Renames words of formulas; a name with dots is one word."""
+
+    def __init__(self, names):
+        self._names = names
+
+    def __call__(self, text):
+        return re.sub(r"[A-Za-z_][\w.#*\[\]]*", lambda word: self._names.get(word[0], word[0]), text)
+
+
+def _table(parameter):
+    quantity = lambda value: f"{float(value)!r} {parameter.unit}" if parameter.unit else float(value)
+    table = {"limits": [quantity(value) for value in parameter.limits]}
+    if parameter.initial is not None:
+        table["initial"] = quantity(parameter.initial)
+    if parameter.count > 1:
+        table["count"] = parameter.count
+    return table
+
+
+def _names(names):
+    return [names] if isinstance(names, str) else list(names)
+
+
+def _is_batch(value):
+    import numpy as np
+
+    return np.ndim(value) == 2
+
+
+_FORMULAS = {
+    "add": "a0 + a1", "subtract": "a0 - a1", "multiply": "a0 * a1", "divide": "a0 / a1", "negative": "-a0",
+    "positive": "a0", "absolute": "abs(a0)", "fabs": "abs(a0)", "square": "a0 * a0", "reciprocal": "1 / a0",
+    "sin": "sin(a0)", "cos": "cos(a0)", "tan": "tan(a0)", "arcsin": "asin(a0)", "arccos": "acos(a0)",
+    "arctan": "atan(a0)", "arctan2": "atan2(a0, a1)", "tanh": "tanh(a0)", "exp": "exp(a0)", "log": "log(a0)",
+    "sqrt": "sqrt(a0)", "sign": "sign(a0)", "minimum": "min(a0, a1)", "maximum": "max(a0, a1)",
+    "fmin": "min(a0, a1)", "fmax": "max(a0, a1)", "less": "a0 < a1", "less_equal": "a0 <= a1",
+    "greater": "a0 > a1", "greater_equal": "a0 >= a1", "deg2rad": "a0 * (pi / 180)", "radians": "a0 * (pi / 180)",
+    "hypot": "sqrt(a0 * a0 + a1 * a1)",
+}  # fmt: skip
+
+
+def _ufunc(ufunc, method, inputs, options):
+    """What numpy's functions do to traced numbers, and to arrays beside them."""
+    import numpy as np
+
+    if method != "__call__" or options:
+        return NotImplemented
+    if ufunc.__name__ in ("power", "float_power"):
+        operation = lambda base, exponent: base**exponent
+    elif (text := _FORMULAS.get(ufunc.__name__)) is not None:
+        operation = lambda *operands: Number.compute(text, *operands)
+    else:
+        raise TypeError(f"numpy.{ufunc.__name__} is no function of laws; these are: {', '.join(sorted(_FORMULAS))}, power")
+
+    def boxed(value):
+        if not isinstance(value, Number):
+            return value
+        box = np.empty((), object)
+        box[()] = value
+        return box
+
+    return np.frompyfunc(operation, len(inputs), 1)(*map(boxed, inputs))

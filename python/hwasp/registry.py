@@ -1,0 +1,69 @@
+"""The problems as Gymnasium environments: `make`, `make_vec`, and names for `gymnasium.make`."""
+
+import importlib.abc
+import importlib.util
+import sys
+
+from . import _hwasp
+
+__all__ = ["make", "make_vec"]
+
+
+def make(experiment, **options):
+    """A Gymnasium environment of an experiment: its name, its file, a dict, or an `Experiment`. Options: those of `hwasp.envs.Env`."""
+    from .envs import Env
+
+    return Env(experiment, **options)
+
+
+def make_vec(experiment, num_envs, **options):
+    """Many of them, stepped in Rust: a `gymnasium.vector.VectorEnv`. Options: those of `hwasp.envs.VectorEnv`."""
+    from .envs import VectorEnv
+
+    return VectorEnv(experiment, num_envs, **options)
+
+
+def env_id(experiment):
+    """The name for `gymnasium.make` of an experiment that comes along: `z-grasp` is `hwasp/ZGrasp-v0`."""
+    words = experiment.replace("/", "-").split("-")
+    return f"hwasp/{''.join(word[:1].upper() + word[1:] for word in words)}-v0"
+
+
+def register_gymnasium():
+    """Lets Gymnasium know the environments: now where it is there, or as soon as somebody imports it."""
+    if "gymnasium" in sys.modules:
+        _register()
+    else:
+        sys.meta_path.insert(0, _WhenImported())
+
+
+def _register():
+    from gymnasium.envs.registration import register, registry
+
+    for experiment in _hwasp.experiments():
+        if env_id(experiment) not in registry:
+            register(
+                id=env_id(experiment),
+                entry_point="hwasp.envs:Env",
+                vector_entry_point="hwasp.envs:VectorEnv",
+                kwargs={"experiment": experiment},
+            )
+
+
+class _WhenImported(importlib.abc.MetaPathFinder):
+    """Waits for Gymnasium, whose import takes longer than ours."""
+
+    def find_spec(self, name, path=None, target=None):
+        if name != "gymnasium":
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(name)
+        if spec is not None and spec.loader is not None:
+            load = spec.loader.exec_module
+
+            def exec_module(module):
+                load(module)
+                _register()
+
+            spec.loader.exec_module = exec_module
+        return spec

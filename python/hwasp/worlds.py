@@ -1,0 +1,108 @@
+"""Environments in Python as problems: a law and a design in front of them, this program's learners behind."""
+
+from . import _hwasp
+from .errors import InputError
+
+__all__ = ["register_problem"]
+
+
+def register_problem(name, make, *, law=None, state=None, build=None, shaped_by=(), time_step=None, horizon=None, about=""):
+    """Registers a problem whose world is a Gymnasium environment; experiments name it as `{"task": {"problem": name}}`.
+
+    - `name`: lower-case letters, digits and hyphens. A problem of this name that was registered before is replaced.
+    - `make`: a function that makes an environment, or the id of one, `"Pendulum-v1"`. Observations and actions are boxes of
+      numbers. The same seed has to give the same episode.
+    - `law`: a `hwasp.Law` between the controller and the environment: its commands are the controller's, its efforts are the
+      components of the action, in order. Its commands need limits, `command={"torque": (-1, 1)}`. Without a law the controller
+      acts by itself, and nothing is designed.
+    - `state`: where the law's state is: places in the observation, or a function of environment and observation. Names of a law's
+      state such as `"obs[2]"` say it by themselves.
+    - `build`: a function of environment and design (an array, SI), called before each start, for worlds that the design shapes;
+      `shaped_by` then names the groups of parameters that it reads. They cannot be in the graph: they are drawn once an episode.
+    - `time_step`: s; the environment's `dt` where none is given, or that of its `render_fps`.
+    - `horizon`: steps after which an episode is cut off; the environment's own where none is given.
+
+    An exception of the environment ends the training, with a checkpoint, and is raised. A `VectorEnv` is refused: this program's
+    learners count and start episodes one by one.
+    """
+    maker = _maker(make)
+    env = maker()
+    try:
+        told = _told(env, law, state, time_step, horizon)
+    finally:
+        env.close()
+    _hwasp.register({
+        "name": name, "about": about, "make": maker, "law": None if law is None else law._law,
+        "build": build, "shaped_by": list(shaped_by), **told,
+    })  # fmt: skip
+
+
+def _maker(make):
+    if isinstance(make, str):
+        import gymnasium
+
+        return lambda: gymnasium.make(make)
+    if not callable(make):
+        raise TypeError(f"make is a function that makes an environment, or the id of one, not {type(make).__name__}")
+    return make
+
+
+def _told(env, law, state, time_step, horizon):
+    import numpy as np
+
+    if hasattr(env, "num_envs"):
+        raise InputError("this makes a vector environment; make a single one, this program starts its episodes one by one")
+    seen, acted = env.observation_space, env.action_space
+    for what, space in [("observations", seen), ("actions", acted)]:
+        if type(space).__name__ != "Box":
+            hint = "gymnasium.wrappers.FlattenObservation makes one of many" if what == "observations" else "only numbers are commands"
+            raise InputError(f"{what} are {space}, where a Box is needed; {hint}")
+    if acted.dtype not in (np.float32, np.float64):
+        raise InputError(f"actions are of {acted.dtype}, where float32 or float64 is needed")
+    count, size = int(np.prod(seen.shape)), int(np.prod(acted.shape))
+    low, high = acted.low.ravel().astype(float), acted.high.ravel().astype(float)
+    if law is None:
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            raise InputError("actions have no finite limits: gymnasium.wrappers.RescaleAction or a law gives them some")
+        names = ["action"] if size == 1 else [f"action[{i}]" for i in range(size)]
+        command = list(zip(names, low.tolist(), high.tolist()))
+        places = []
+    else:
+        if len(law.effort_names) != size:
+            raise InputError(f"the law gives {len(law.effort_names)} efforts, and an action has {size} components")
+        free = [name for name, limits in law.command_limits.items() if limits is None]
+        if free:
+            raise InputError(f"the commands {', '.join(free)} have no limits: command={{{free[0]!r}: (-1, 1)}}")
+        command = [(name, float(lo), float(hi)) for name, (lo, hi) in law.command_limits.items()]
+        places = _places(law.state_names, state, count)
+    spec = getattr(env, "spec", None)
+    horizon = horizon or getattr(spec, "max_episode_steps", None)
+    if not horizon:
+        raise InputError("the environment says no max_episode_steps: give the horizon of an episode")
+    if time_step is None:
+        time_step = getattr(env.unwrapped, "dt", None)
+    if time_step is None:
+        time_step = 1 / (getattr(env, "metadata", None) or {}).get("render_fps", 20)
+    return {
+        "observation": [(f"obs[{i}]", "") for i in range(count)], "state": state if callable(state) else None, "places": places,
+        "command": command, "shape": list(acted.shape), "single": acted.dtype == np.float32,
+        "limits": list(zip(low.tolist(), high.tolist())), "horizon": int(horizon), "time_step": float(time_step),
+    }  # fmt: skip
+
+
+def _places(names, state, count):
+    if callable(state) or (state is None and not names):
+        return []
+    if state is None:
+        try:
+            state = [int(name.removeprefix("obs[").removesuffix("]")) for name in names]
+        except ValueError:
+            raise InputError(
+                f"the law reads {', '.join(names)}: say where that is in the observation, state=[0, 2], or by a function"
+            ) from None
+    places = [int(place) for place in state]
+    if len(places) != len(names):
+        raise InputError(f"the law reads {len(names)} numbers, and state names {len(places)} places")
+    if any(not 0 <= place < count for place in places):
+        raise InputError(f"state names the places {places}, and an observation has {count} numbers, from 0 on")
+    return places

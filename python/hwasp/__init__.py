@@ -16,7 +16,7 @@ Everything is in SI units: m, kg, s, N, rad. Errors are `hwasp.HwaspError` and i
 from . import functions, laws
 from ._hwasp import __version__, experiments, problems
 from .errors import ClosedError, HwaspError, InputError, RunError
-from .experiments import Comparison, Experiment, Run, compare
+from .runs import Comparison, Experiment, Run, compare
 from .functions import *  # noqa: F403 - the functions of laws, by name
 from .laws import Law, Parameter, law
 from .policy import Policy

@@ -7,7 +7,7 @@ from gymnasium.vector import AutoresetMode
 
 from . import _hwasp
 from .errors import InputError
-from .experiments import Experiment
+from .runs import Experiment
 
 __all__ = ["Env", "VectorEnv"]
 
@@ -15,7 +15,8 @@ __all__ = ["Env", "VectorEnv"]
 class _Stepped:
     """What both have: an experiment, its episodes, and the spaces that follow."""
 
-    def _open(self, experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress):
+    def _open(self, experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress,
+              horizon):  # fmt: skip
         if world not in ("training", "deployment"):
             raise InputError(f"world = {world!r}; it is 'training' or 'deployment'")
         experiment = Experiment.load(experiment)
@@ -33,6 +34,7 @@ class _Stepped:
             scale_actions=scale_actions,
             scale_observations=scale_observations,
             progress=progress,
+            horizon=horizon,
         )
         ports = self._episodes.actions()
         self.action_names = [name for name, _ in ports]
@@ -81,6 +83,7 @@ class Env(_Stepped, gymnasium.Env):
     - `scale_actions`: actions are from -1 to 1 between their limits; else they are in SI.
     - `scale_observations`: observations are centred and scaled as the experiment's controller sees them; else they are in SI.
     - `progress`: how much of a training is done, for worlds that begin easier.
+    - `horizon`: steps after which an episode is truncated; the experiment's where none is given.
 
     `reset(seed=s)` starts the first episode of a training with seed s, and each further `reset()` the next one.
     `options={"design": {"stiffness": 3.0}}` builds the hardware to another design, SI, from this start on. The last info of an
@@ -90,13 +93,14 @@ class Env(_Stepped, gymnasium.Env):
     metadata = {"render_modes": []}
 
     def __init__(self, experiment, *, method=None, settings=None, world="training", scale_actions=True,
-                 scale_observations=True, progress=1.0, render_mode=None):  # fmt: skip
+                 scale_observations=True, progress=1.0, horizon=None, render_mode=None):  # fmt: skip
         if render_mode is not None:
             raise InputError(f"render_mode = {render_mode!r}; pictures are drawn by `hwasp play`, and here there are none")
         self.observation_space, self.action_space = self._open(
-            experiment, 1, 1, method, settings, world, scale_actions, scale_observations, progress
+            experiment, 1, 1, method, settings, world, scale_actions, scale_observations, progress, horizon
         )
-        self._options = dict(world=world, scale_actions=scale_actions, scale_observations=scale_observations, progress=progress)
+        self._options = dict(world=world, scale_actions=scale_actions, scale_observations=scale_observations,
+                             progress=progress, horizon=horizon)  # fmt: skip
         width = self.observation_space.shape
         self._observation = np.empty((1, *width), np.float32)
         self._reward, self._terminated, self._truncated = np.empty(1), np.empty(1, bool), np.empty(1, bool)
@@ -160,14 +164,14 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
 
     def __init__(self, experiment, num_envs, *, threads=None, autoreset_mode=AutoresetMode.NEXT_STEP, copy=True, method=None,
                  settings=None, world="training", scale_actions=True, scale_observations=True, progress=1.0,
-                 render_mode=None):  # fmt: skip
+                 horizon=None, render_mode=None):  # fmt: skip
         if render_mode is not None:
             raise InputError(f"render_mode = {render_mode!r}; many environments are not drawn")
         autoreset_mode = AutoresetMode(autoreset_mode)
         if threads is None:
             threads = _cores()
         self.single_observation_space, self.single_action_space = self._open(
-            experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress
+            experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress, horizon
         )
         batch = gymnasium.vector.utils.batch_space
         self.num_envs = num_envs

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from functools import update_wrapper
 
-import re
-
 from ._hwasp import Number, trace
 
 __all__ = ["Law", "Parameter", "law"]
@@ -144,13 +142,19 @@ class Law:
         Its commands, states and efforts have to be called as formulas call them, `joint.knee.pos` for one; commands without a
         dot are `command.NAME`, and efforts without one `prefix` and their name.
         """
-        definitions, formulas = self._law.text()
-        known = {name: f"command.{name}" for name in self.command if "." not in name}
-        swap = _Renaming(known)
-        effort = lambda name: name if "." in name else prefix + name
+        # A law in Python computes with numbers in SI, and units are the caller's business.
+        si = lambda names: [f"si({name})" for name in names]
+        design = [
+            name if parameter.count == 1 else f"{name}[{i}]"
+            for name, parameter in self.parameters.items()
+            for i in range(parameter.count)
+        ]
+        commands = [name if "." in name else f"command.{name}" for name in self.command]
+        definitions, formulas = self._law.text(si(design), si(commands + self.state_names))
+        efforts = [name if "." in name else prefix + name for name in self.effort_names]
         return {
-            "task.define": {name: swap(text) for name, text in definitions},
-            "task.law": {effort(name): swap(text) for name, text in zip(self.effort_names, formulas)},
+            "task.define": dict(definitions),
+            "task.law": dict(zip(efforts, formulas)),
             "task.design": {name: _table(parameter) for name, parameter in self.parameters.items()},
         }
 
@@ -176,16 +180,6 @@ class Law:
         if state is None:
             state = np.zeros((len(command), 0))
         return command, np.atleast_2d(np.asarray(state, "float64"))
-
-
-class _Renaming:
-    """Renames words of formulas; a name with dots is one word."""
-
-    def __init__(self, names):
-        self._names = names
-
-    def __call__(self, text):
-        return re.sub(r"[A-Za-z_][\w.#*\[\]]*", lambda word: self._names.get(word[0], word[0]), text)
 
 
 def _table(parameter):
@@ -241,3 +235,10 @@ def _ufunc(ufunc, method, inputs, options):
         return box
 
     return np.frompyfunc(operation, len(inputs), 1)(*map(boxed, inputs))
+
+
+def _method(number, name):
+    """What an array of traced numbers asks its elements for: functions by numpy's names."""
+    if name.startswith("_") or name not in _FORMULAS:
+        raise AttributeError(f"a law's number has no {name}")
+    return lambda *others: Number.compute(_FORMULAS[name], number, *others)

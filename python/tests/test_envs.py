@@ -61,7 +61,7 @@ def test_many_are_the_same_as_one_by_one(experiment):
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 def test_autoreset_is_gymnasiums(mode):
     """Episodes of five steps, four times over; of two experiments, one of which ends by itself."""
-    options = {"settings": {"task.horizon": 5}}
+    options = {"horizon": 5}
     singles = SyncVectorEnv([lambda: hwasp.make("hopper", **options)] * 3, autoreset_mode=mode)
     ours = hwasp.make_vec("hopper", 3, autoreset_mode=mode, threads=2, **options)
     assert ours.metadata["autoreset_mode"] is mode
@@ -200,7 +200,7 @@ def test_what_cannot_be_is_told():
 
 
 def test_an_episode_that_is_over_goes_on_only_after_a_reset():
-    env = hwasp.make("reach", settings={"task.horizon": 3}, method="fixed")
+    env = hwasp.make("reach", horizon=3, method="fixed")
     env.reset(seed=0)
     ends = [env.step(np.zeros(1, np.float32))[2:4] for _ in range(3)]
     assert ends == [(False, False), (False, False), (False, True)]
@@ -217,7 +217,7 @@ def test_buffers_are_new_unless_asked_otherwise():
 
 
 def test_an_episode_tells_what_came_of_it():
-    env = hwasp.make("z-grasp", settings={"task.horizon": 4})
+    env = hwasp.make("z-grasp", horizon=4)
     env.reset(seed=0)
     for _ in range(4):
         *_, over, info = env.step(np.zeros(len(env.action_names), np.float32))
@@ -298,7 +298,7 @@ def test_a_thousand_constructions_and_many_steps_leave_no_memory_behind():
     gc.collect()
     before = _memory()
     work(1000)
-    env = hwasp.make_vec("reach", 64, threads=1, settings={"task.horizon": 20})
+    env = hwasp.make_vec("reach", 64, threads=1, horizon=20)
     env.reset(seed=0)
     action = np.zeros((64, 2), np.float32)
     for _ in range(16_000):  # a million steps

@@ -95,9 +95,9 @@ def test_a_run_has_design_curve_policy_and_figures():
     [gear] = run.design.values()
     assert gear.unit == "" and gear.limits[0] < gear.values[0] < gear.limits[1] and "gear" in repr(run)
     metrics = run.metrics
-    assert metrics["env_steps"][-1] == 20_000 and len(metrics["return"]) == len(metrics["learner.kl"])
+    assert metrics["env_steps"][-1] == run.summary["env_steps"] and len(metrics["return"]) == len(metrics["learner.kl"])
     assert list(metrics.to_pandas().columns) == list(metrics)
-    assert run.finished and run.summary["env_steps"] == 20_000 and str(run.experiment) == (run.path / "experiment.toml").read_text()
+    assert run.finished and (run.path / "experiment.toml").read_text().endswith(str(run.experiment))
     evaluated = run.evaluate()
     assert evaluated == run.summary["evaluation"]
     assert run.evaluate(7, seed=1, threads=2)["episodes"] == 7

@@ -120,9 +120,9 @@ def test_a_law_of_an_experiment_from_a_model_is_the_same_as_text():
 
     short = {"train.env_steps": 4000, "train.evaluation_episodes": 5}
     arm = hwasp.Experiment.load("balanced-arm").set(short)
-    by_text = arm.set({"task.law": {"joint.shoulder": "command.shoulder - stiffness * 0.1 * 0.1 * sin(joint.shoulder.pos)"}})
+    by_text = arm.set({"task.law": {"joint.shoulder": "command.shoulder - stiffness * 0.1 m * 0.1 m * sin(joint.shoulder.pos)"}})
     by_python = arm.set(spring.settings())
-    assert "stiffness" in str(by_python) and "parallel" not in by_python.check()
+    assert "si(stiffness)" in str(by_python) and "is sound" in by_python.check()
     one, two = (e.train(out, progress=False) for e, out in [(by_text, "text"), (by_python, "python")])
     assert np.array_equal(one.params, two.params)
     assert (one.path / "policy.safetensors").read_bytes() == (two.path / "policy.safetensors").read_bytes()

@@ -47,6 +47,7 @@ impl Checker<'_> {
         }
         match name {
             "abs" => Ok(Value { parts: self.each(Unary::Abs, &first.parts), quantity: first.quantity }),
+            "si" => Ok(Value { parts: first.parts.clone(), quantity: Quantity::Unknown }),
             "sqrt" => Ok(Value { parts: self.each(Unary::Sqrt, &first.parts), quantity: first.quantity.root() }),
             "tan" => {
                 let (sin, cos) = (

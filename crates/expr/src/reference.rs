@@ -52,6 +52,7 @@ pub const FUNCTIONS: &[FunctionDoc] = &[
     function("max", "max(x, …)", "the greatest, likewise"),
     function("clip", "clip(x, low, high)", "x kept within limits"),
     function("where", "where(condition, yes, no)", "one of two values; the other may be no number"),
+    function("si", "si(x)", "its number in SI, which fits everything: for arithmetic that knows no units"),
     function("sqrt", "sqrt(x)", "square root"),
     function("exp", "exp(x)", "e to the power of x"),
     function("log", "log(x)", "natural logarithm"),

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use hwasp_core::{ActionDecoder, End, EnvSpec, Environment, HardwarePolicy, Normalizer, Policy as _, Purpose, stream};
+use hwasp_experiment::MOST_STEPS;
 use hwasp_training::World;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -52,7 +53,9 @@ struct Lane {
     /// Never locked: whoever has a lane to itself needs no lock.
     environment: Mutex<Box<dyn Environment>>,
     decoder: ActionDecoder,
-    /// The whole design of the episode, SI.
+    /// What the hardware was built to, SI.
+    built: Vec<f64>,
+    /// The whole design of the episode, SI: as built, but for what is drawn.
     design: Vec<f64>,
     seed: u64,
     /// The index of the episode at hand under this seed.
@@ -79,6 +82,8 @@ impl Lane {
     fn start(&mut self, interface: &Interface) {
         self.begun = true;
         self.steps = 0;
+        self.design.clone_from(&self.built);
+        self.decoder.build(&self.design);
         self.put(interface);
         self.see(interface);
     }
@@ -152,7 +157,7 @@ pub(crate) struct Episodes {
 #[pymethods]
 impl Episodes {
     #[new]
-    #[pyo3(signature = (experiment, *, lanes, threads, deployment, scale_actions, scale_observations, progress))]
+    #[pyo3(signature = (experiment, *, lanes, threads, deployment, scale_actions, scale_observations, progress, horizon))]
     #[allow(clippy::too_many_arguments, reason = "the names are Python's keywords")]
     fn new(
         py: Python<'_>,
@@ -163,7 +168,11 @@ impl Episodes {
         scale_actions: bool,
         scale_observations: bool,
         progress: f64,
+        horizon: Option<usize>,
     ) -> PyResult<Self> {
+        if horizon.is_some_and(|horizon| !(1..=MOST_STEPS).contains(&horizon)) {
+            return Err(error::input(format!("horizon is from 1 to {MOST_STEPS}")));
+        }
         if !(1..=MOST_LANES).contains(&lanes) {
             return Err(error::input(format!("num_envs = {lanes}; it is from 1 to {MOST_LANES}")));
         }
@@ -178,13 +187,15 @@ impl Episodes {
             let (policy, params) = (&assembly.policy, assembly.init());
             let worlds = &assembly.worlds;
             let world = if deployment { &worlds.deployment } else { &worlds.training };
-            let interface = Interface::new(policy, &params, world, scale_actions, scale_observations, progress);
+            let mut interface = Interface::new(policy, &params, world, scale_actions, scale_observations, progress);
+            interface.env.horizon = horizon.unwrap_or(interface.env.horizon);
             let design = policy.design(&params);
             let lanes = (0..lanes).map(|_| {
                 let mut decoder = policy.action_decoder();
                 decoder.build(&design);
                 Lane {
-                    environment: Mutex::new(world.make.make(None)),
+                    environment: Mutex::new(world.make.make(horizon)),
+                    built: design.clone(),
                     design: design.clone(),
                     seed: 0,
                     episode: 0,
@@ -360,8 +371,7 @@ impl Episodes {
         if design.len() != needed || design.iter().any(|value| !value.is_finite()) {
             return Err(error::input(format!("a design has {needed} finite numbers here, one for each parameter")));
         }
-        lane.decoder.build(&design);
-        lane.design = design;
+        lane.built = design;
         Ok(())
     }
 

@@ -132,6 +132,23 @@ impl Number {
         power(slf.py(), slf.as_any(), other)
     }
 
+    fn __rpow__<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        modulo: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if !modulo.is_none() {
+            return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
+        }
+        power(slf.py(), other, slf.as_any())
+    }
+
+    /// numpy asks the elements of an array for functions by name.
+    fn __getattr__<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let laws = PyModule::import(slf.py(), "hwasp.laws")?;
+        laws.call_method1("_method", (slf, name))
+    }
+
     fn __neg__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         compute(slf.py(), "-a0", &[slf.clone().into_any()])
     }
@@ -186,11 +203,17 @@ impl Number {
         laws.call_method1("_ufunc", (ufunc, method, inputs, options))
     }
 
+    /// Called by `numpy.clip`, which names an array to write into, too.
+    #[pyo3(signature = (low, high, out = None))]
     fn clip<'py>(
         slf: &Bound<'py, Self>,
         low: &Bound<'py, PyAny>,
         high: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        if out.is_some() {
+            return Err(PyTypeError::new_err("a law's numbers are written into no array"));
+        }
         compute(slf.py(), "clip(a0, a1, a2)", &[slf.clone().into_any(), low.clone(), high.clone()])
     }
 
@@ -379,12 +402,19 @@ impl Law {
         self.law.program().to_svg()
     }
 
-    /// As text: definitions, and a formula for each effort.
-    fn text(&self) -> (Vec<(String, String)>, Vec<String>) {
+    /// As text over these names of design parameters, and of commands and states: definitions, and a formula for each effort.
+    fn text(&self, design: Vec<String>, columns: Vec<String>) -> PyResult<(Vec<(String, String)>, Vec<String>)> {
         let ports = self.law.ports();
-        let columns: Vec<String> = ports.command.iter().chain(&ports.state).cloned().collect();
-        let texts = self.formulas.text(&self.law.design().names(), &columns, "law_", &self.outputs);
-        (texts.definitions, texts.formulas)
+        let needed = [self.law.design().len(), ports.command.len() + ports.state.len()];
+        if [design.len(), columns.len()] != needed {
+            return Err(PyValueError::new_err(format!(
+                "there are {} and {} names, not {needed:?}",
+                design.len(),
+                columns.len()
+            )));
+        }
+        let texts = self.formulas.text(&design, &columns, "law_", &self.outputs);
+        Ok((texts.definitions, texts.formulas))
     }
 }
 

@@ -22,6 +22,8 @@ sys.path.append(str(pathlib.Path(__file__).parents[1] / "gym"))
 from robots import HERE, ROBOTS, copy_model
 
 TURNS, LANES = 5, 64
+# Of the range of an action.
+NOISE = 0.3
 
 
 def experiment(robot, folder):
@@ -32,14 +34,15 @@ def experiment(robot, folder):
 
 
 def stepped(env, steps):
-    """Steps per second of a vector environment under random actions."""
+    """Steps per second of a vector environment under the actions that an untrained controller of ours takes: noise."""
     env.reset(seed=0)
-    env.action_space.seed(0)
-    actions = [env.action_space.sample() for _ in range(16)]
+    chance, shape = np.random.default_rng(0), env.action_space.shape
+    half = env.action_space.high
+    actions = [np.clip(2 * NOISE * half * chance.standard_normal(shape), -half, half).astype(np.float32) for _ in range(256)]
     count = max(steps // env.num_envs, 1)
     began = time.perf_counter()
     for i in range(count):
-        env.step(actions[i % 16])
+        env.step(actions[i % 256])
     rate = count * env.num_envs / (time.perf_counter() - began)
     env.close()
     return rate
@@ -47,7 +50,8 @@ def stepped(env, steps):
 
 def rollouts(mine, steps, folder, threads):
     """Steps per second of the program's own: a random controller, in one iteration of many episodes; the update apart."""
-    short = {"method": "fixed", "controller.hidden": [1], "train.steps_per_iteration": steps, "train.episodes_per_iteration": LANES,
+    short = {"method": "fixed", "controller.hidden": [1], "controller.output_gain": 0.01, "noise.command": NOISE,
+             "train.steps_per_iteration": steps, "train.episodes_per_iteration": LANES,
              "train.env_steps": 2 * steps, "learner.algorithm": "ppo", "ppo.epochs": 1, "ppo.minibatch_rows": steps, "baseline.epochs": 1,
              "baseline.hidden": [1], "baseline.minibatch_rows": steps}
     run = mine.set(short).train(tempfile.mkdtemp(dir=folder), threads=threads, progress=False)

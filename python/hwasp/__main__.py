@@ -5,7 +5,7 @@ import sys
 from ._hwasp import main as _main
 
 
-def main():
+def main() -> None:
     """Runs the program with the words that were typed, and ends with its exit status."""
     sys.exit(_main(["hwasp", *sys.argv[1:]], [sys.executable, "-m", "hwasp"]))
 

@@ -1,5 +1,9 @@
 """The problems as Gymnasium environments: one at a time, and many at once."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import gymnasium
 import numpy as np
 from gymnasium import spaces
@@ -9,14 +13,30 @@ from . import _hwasp
 from .errors import InputError
 from .runs import Experiment
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import Any, Literal, TypeAlias
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from .runs import Loadable
+
+    Box: TypeAlias = spaces.Box[np.float32]
+    Observation: TypeAlias = NDArray[np.float32]
+    Limits: TypeAlias = tuple[float, float]
+    World: TypeAlias = Literal["training", "deployment"]
+
 __all__ = ["Env", "VectorEnv"]
 
 
 class _Stepped:
     """What both have: an experiment, its episodes, and the spaces that follow."""
 
-    def _open(self, experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress,
-              horizon):  # fmt: skip
+    np_random: np.random.Generator
+
+    def _open(self, experiment: Loadable, num_envs: int, threads: int, method: str | None, settings: dict[str, Any] | None,
+              world: World, scale_actions: bool, scale_observations: bool, progress: float,
+              horizon: int | None) -> tuple[Box, Box]:  # fmt: skip
         if world not in ("training", "deployment"):
             raise InputError(f"world = {world!r}; it is 'training' or 'deployment'")
         experiment = Experiment.load(experiment)
@@ -39,16 +59,16 @@ class _Stepped:
         ports = self._episodes.actions()
         self.action_names = [name for name, _ in ports]
         self.observation_names = [name for name, _ in self._episodes.observation_ports()]
-        scaled = lambda limits: (-1.0, 1.0) if scale_actions else limits
+        scaled: Callable[[Limits], Limits] = lambda limits: (-1.0, 1.0) if scale_actions else limits
         low, high = zip(*[(-np.inf, np.inf) if limits is None else scaled(limits) for _, limits in ports])
         action = spaces.Box(np.array(low, np.float32), np.array(high, np.float32), dtype=np.float32)
         return spaces.Box(-np.inf, np.inf, (len(self.observation_names),), np.float32), action
 
-    def _seed(self):
+    def _seed(self) -> int:
         """The seed of whoever was given none."""
         return int(self.np_random.integers(2**31))
 
-    def _designed(self, lane, design):
+    def _designed(self, lane: int, design: ArrayLike | dict[str, Any]) -> None:
         """Builds the hardware of a lane to a design: a dict by the names of parameters, or all of them in order."""
         if isinstance(design, dict):
             names = [name for name, _, _ in self._episodes.parameters()]
@@ -63,16 +83,16 @@ class _Stepped:
         self._episodes.build(lane, np.asarray(design, float).tolist())
 
     @property
-    def dt(self):
+    def dt(self) -> float:
         """Time of a step, s."""
         return self._episodes.time_step
 
-    def set_progress(self, progress):
+    def set_progress(self, progress: float) -> None:
         """Says how much of a training is done, 0 to 1, to worlds that begin easier; it counts from the next starts on."""
         self._episodes.set_progress(float(progress))
 
 
-class Env(_Stepped, gymnasium.Env):
+class Env(_Stepped, gymnasium.Env["Observation", "NDArray[Any]"]):
     """One environment of an experiment, with the law of the hardware in it.
 
     - `experiment`: a name, a file, a dict, or an `Experiment`; `settings` are set in it.
@@ -91,9 +111,12 @@ class Env(_Stepped, gymnasium.Env):
     """
 
     metadata = {"render_modes": []}
+    observation_space: Box
+    action_space: Box
 
-    def __init__(self, experiment, *, method=None, settings=None, world="training", scale_actions=True,
-                 scale_observations=True, progress=1.0, horizon=None, render_mode=None):  # fmt: skip
+    def __init__(self, experiment: Loadable, *, method: str | None = None, settings: dict[str, Any] | None = None,
+                 world: World = "training", scale_actions: bool = True, scale_observations: bool = True,
+                 progress: float = 1.0, horizon: int | None = None, render_mode: None = None) -> None:  # fmt: skip
         if render_mode is not None:
             raise InputError(f"render_mode = {render_mode!r}; pictures are drawn by `hwasp play`, and here there are none")
         self.observation_space, self.action_space = self._open(
@@ -106,7 +129,7 @@ class Env(_Stepped, gymnasium.Env):
         self._reward, self._terminated, self._truncated = np.empty(1), np.empty(1, bool), np.empty(1, bool)
         self._seeded = False
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options and "design" in options:
             self._designed(0, options["design"])
@@ -115,7 +138,7 @@ class Env(_Stepped, gymnasium.Env):
         self._seeded = True
         return self._episodes.reset([seed], None)[0], {}
 
-    def step(self, action):
+    def step(self, action: NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         action = np.asarray(action)
         ended = self._episodes.step(
             action[None], False, False, self._observation, self._reward, self._terminated, self._truncated
@@ -129,30 +152,30 @@ class Env(_Stepped, gymnasium.Env):
             info,
         )
 
-    def close(self):
+    def close(self) -> None:
         if hasattr(self, "_episodes"):
             self._episodes.close()
 
     @property
-    def design(self):
+    def design(self) -> dict[str, float]:
         """The design of the episode by the names of parameters, SI."""
         names = [name for name, _, _ in self._episodes.parameters()]
         return dict(zip(names, self._episodes.design(0).tolist()))
 
     @property
-    def state(self):
+    def state(self) -> dict[str, float]:
         """What the law reads of the world, SI, by name."""
         return self._episodes.state(0)
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Callable[..., Env], tuple[Experiment, dict[str, Any]]]:
         return (_env, (self.experiment, self._options))
 
 
-def _env(experiment, options):
+def _env(experiment: Experiment, options: dict[str, Any]) -> Env:
     return Env(experiment, method=experiment.method, **options)
 
 
-class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
+class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any]", "NDArray[Any]"]):
     """Many environments of an experiment, stepped in Rust by `threads` threads (all cores where none is given).
 
     The options of `Env` apply. `autoreset_mode` is Gymnasium's: `NEXT_STEP` (the default), `SAME_STEP`, with `final_obs` and
@@ -162,9 +185,16 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
     Arrays are new ones in each step; with `copy=False` they are the same ones, written anew.
     """
 
-    def __init__(self, experiment, num_envs, *, threads=None, autoreset_mode=AutoresetMode.NEXT_STEP, copy=True, method=None,
-                 settings=None, world="training", scale_actions=True, scale_observations=True, progress=1.0,
-                 horizon=None, render_mode=None):  # fmt: skip
+    single_observation_space: Box
+    single_action_space: Box
+    observation_space: Box
+    action_space: Box
+
+    def __init__(self, experiment: Loadable, num_envs: int, *, threads: int | None = None,
+                 autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, copy: bool = True, method: str | None = None,
+                 settings: dict[str, Any] | None = None, world: World = "training", scale_actions: bool = True,
+                 scale_observations: bool = True, progress: float = 1.0, horizon: int | None = None,
+                 render_mode: None = None) -> None:  # fmt: skip
         if render_mode is not None:
             raise InputError(f"render_mode = {render_mode!r}; many environments are not drawn")
         autoreset_mode = AutoresetMode(autoreset_mode)
@@ -175,28 +205,31 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
         )
         batch = gymnasium.vector.utils.batch_space
         self.num_envs = num_envs
-        self.observation_space = batch(self.single_observation_space, num_envs)
-        self.action_space = batch(self.single_action_space, num_envs)
+        self.observation_space = batch(self.single_observation_space, num_envs)  # type: ignore[assignment]
+        self.action_space = batch(self.single_action_space, num_envs)  # type: ignore[assignment]
         self.autoreset_mode, self._copy = autoreset_mode, copy
         self.metadata = {"render_modes": [], "autoreset_mode": autoreset_mode}
         self._arrays = self._new_arrays()
         self._seeded = False
 
-    def _new_arrays(self):
+    def _new_arrays(self) -> tuple[Observation, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         n = self.num_envs
         observation = np.empty(self.observation_space.shape, np.float32)
         return observation, np.empty(n), np.empty(n, bool), np.empty(n, bool)
 
-    def reset(self, *, seed=None, options=None):
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         n, options = self.num_envs, options or {}
         first = seed if isinstance(seed, (int, np.integer)) else None
         super().reset(seed=None if first is None else int(first))
         if seed is None and not self._seeded:
             first = self._seed()
+        seeds: list[int | None]
         if first is not None:
             seeds = [int(first) + i for i in range(n)]
         else:
-            seeds = [None] * n if seed is None else list(seed)
+            seeds = [None] * n if seed is None else list(seed)  # type: ignore[arg-type]
         mask = options.get("reset_mask")
         if mask is not None:
             mask = np.asarray(mask, bool).tolist()
@@ -205,13 +238,15 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
         self._seeded = True
         return self._episodes.reset(seeds, mask), {}
 
-    def step(self, actions):
+    def step(
+        self, actions: NDArray[Any]
+    ) -> tuple[Observation, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         arrays = self._new_arrays() if self._copy else self._arrays
         same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
         ended = self._episodes.step(
             actions, self.autoreset_mode is AutoresetMode.NEXT_STEP, same_step, *arrays
         )
-        infos = {}
+        infos: dict[str, Any] = {}
         for i in ended:
             told = self._episodes.ending(i)
             if same_step:
@@ -221,17 +256,17 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv):
             self._episodes.go_on(ended, arrays[0])
         return (*arrays, infos)
 
-    def close_extras(self, **kwargs):
+    def close_extras(self, **kwargs: Any) -> None:
         if hasattr(self, "_episodes"):
             self._episodes.close()
 
-    def design(self, i=0):
+    def design(self, i: int = 0) -> dict[str, float]:
         """The design of environment `i` by the names of parameters, SI."""
         names = [name for name, _, _ in self._episodes.parameters()]
         return dict(zip(names, self._episodes.design(i).tolist()))
 
 
-def _cores():
+def _cores() -> int:
     import os
 
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

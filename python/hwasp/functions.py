@@ -4,7 +4,19 @@ They take traced numbers and plain ones; of plain ones alone they give a float. 
 `numpy.sin(x)` is `hwasp.sin(x)`.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, overload
+
 from ._hwasp import Number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias, TypeVar
+
+    Scalar: TypeAlias = Number | float
+    #: Of plain numbers the result is a float.
+    X = TypeVar("X", float, Scalar)
 
 __all__ = [
     "arccos",
@@ -29,7 +41,11 @@ __all__ = [
 ]
 
 
-def formula(text, *operands):
+@overload
+def formula(text: str, *operands: float) -> float: ...
+@overload
+def formula(text: str, *operands: Scalar) -> Scalar: ...
+def formula(text: str, *operands: Scalar) -> Scalar:
     """A formula of experiments over `a0`, `a1` and so on: everything that they can say, the library of laws included.
 
     >>> formula("torsion_spring(a0, 2 N*m/rad, 0.1 rad)", 0.6)
@@ -38,8 +54,8 @@ def formula(text, *operands):
     return Number.compute(text, *operands)
 
 
-def _unary(name, doc):
-    def function(x):
+def _unary(name: str, doc: str) -> Callable[[X], X]:
+    def function(x: X) -> X:
         return Number.compute(f"{name}(a0)", x)
 
     function.__doc__ = doc
@@ -64,26 +80,46 @@ for _name in ("sin", "cos", "tan", "arcsin", "arccos", "arctan", "tanh", "exp", 
 del _name
 
 
-def arctan2(y, x):
+@overload
+def arctan2(y: float, x: float) -> float: ...
+@overload
+def arctan2(y: Scalar, x: Scalar) -> Scalar: ...
+def arctan2(y: Scalar, x: Scalar) -> Scalar:
     """Angle of the point (x, y) within ±pi, rad."""
     return Number.compute("atan2(a0, a1)", y, x)
 
 
-def minimum(x, y):
+@overload
+def minimum(x: float, y: float) -> float: ...
+@overload
+def minimum(x: Scalar, y: Scalar) -> Scalar: ...
+def minimum(x: Scalar, y: Scalar) -> Scalar:
     """The smaller of two."""
     return Number.compute("min(a0, a1)", x, y)
 
 
-def maximum(x, y):
+@overload
+def maximum(x: float, y: float) -> float: ...
+@overload
+def maximum(x: Scalar, y: Scalar) -> Scalar: ...
+def maximum(x: Scalar, y: Scalar) -> Scalar:
     """The larger of two."""
     return Number.compute("max(a0, a1)", x, y)
 
 
-def clip(x, low, high):
+@overload
+def clip(x: float, low: float, high: float) -> float: ...
+@overload
+def clip(x: Scalar, low: Scalar, high: Scalar) -> Scalar: ...
+def clip(x: Scalar, low: Scalar, high: Scalar) -> Scalar:
     """x kept within limits; no derivative outside."""
     return Number.compute("clip(a0, a1, a2)", x, low, high)
 
 
-def where(condition, yes, no):
+@overload
+def where(condition: float, yes: float, no: float) -> float: ...
+@overload
+def where(condition: Scalar, yes: Scalar, no: Scalar) -> Scalar: ...
+def where(condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
     """One of two values. The other may be no number, and no derivative passes to it."""
     return Number.compute("where(a0, a1, a2)", condition, yes, no)

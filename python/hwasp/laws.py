@@ -1,9 +1,27 @@
 """Laws of the hardware, written in Python: traced once, and from then on the same as a law in Rust or as text."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import update_wrapper
+from typing import TYPE_CHECKING
 
 from ._hwasp import Number, trace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from typing import Any, TypeAlias
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    #: Of design, commands and state, all by name: the efforts.
+    Function: TypeAlias = Callable[[Any, Any, Any], Any]
+    Names: TypeAlias = str | Sequence[str]
+    Commands: TypeAlias = Names | dict[str, Any]
+    #: One value for each parameter, or by the names of groups.
+    Design: TypeAlias = Iterable[float] | dict[str, Any]
+    Array: TypeAlias = NDArray[np.float64]
 
 __all__ = ["Law", "Parameter", "law"]
 
@@ -25,28 +43,29 @@ class Parameter:
 class _Named:
     """Traced numbers by name: as attributes, by `[name]`, and by their place."""
 
-    def __init__(self, values):
+    def __init__(self, values: dict[str, Any]) -> None:
         self._values = values
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         try:
             return self._values[name]
         except KeyError:
             raise AttributeError(f"there is no `{name}` here, but {', '.join(self._values) or 'nothing'}") from None
 
-    def __getitem__(self, key):
+    def __getitem__(self, key: str | int | slice) -> Any:
         if isinstance(key, str):
             return getattr(self, key)
         return list(self._values.values())[key]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Any]:
         return iter(self._values.values())
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._values)
 
 
-def law(*, design=None, command, state=(), effort):
+def law(*, design: Mapping[str, Parameter | tuple[float, float]] | None = None, command: Commands, state: Names = (),
+        effort: Names) -> Callable[[Function], Law]:  # fmt: skip
     """Makes a law of a function `f(design, command, state)` that gives the efforts.
 
     - `design`: parameters by name, each a `Parameter` or its limits `(low, high)`.
@@ -65,7 +84,7 @@ def law(*, design=None, command, state=(), effort):
     [-1.0]
     """
 
-    def decorate(function):
+    def decorate(function: Function) -> Law:
         return Law(function, design=design or {}, command=command, state=state, effort=effort)
 
     return decorate
@@ -74,14 +93,16 @@ def law(*, design=None, command, state=(), effort):
 class Law:
     """A law of the hardware; `law` makes one."""
 
-    def __init__(self, function, *, design, command, state, effort):
-        parameters = {name: p if isinstance(p, Parameter) else Parameter(tuple(p)) for name, p in design.items()}
+    def __init__(self, function: Function, *, design: Mapping[str, Parameter | tuple[float, float]], command: Commands,
+                 state: Names, effort: Names) -> None:  # fmt: skip
+        parameters = {name: p if isinstance(p, Parameter) else Parameter(tuple(p)) for name, p in design.items()}  # type: ignore[arg-type]
+        limits: dict[str, tuple[float, float] | None]
         limits = dict(command) if isinstance(command, dict) else {name: None for name in _names(command)}
         states, efforts = _names(state), _names(effort)
 
-        def traced(uniforms, commands, columns):
+        def traced(uniforms: Iterable[Number], commands: Iterable[Number], columns: Iterable[Number]) -> list[Any]:
             uniforms = iter(uniforms)
-            groups = {}
+            groups: dict[str, Number | list[Number]] = {}
             for name, parameter in parameters.items():
                 numbers = [next(uniforms) for _ in range(parameter.count)]
                 groups[name] = numbers[0] if parameter.count == 1 else numbers
@@ -95,14 +116,15 @@ class Law:
                 return [given[name] for name in efforts]
             return list(given) if isinstance(given, (list, tuple)) or hasattr(given, "__len__") else [given]
 
+        groups: list[tuple[Any, ...]]
         groups = [(n, p.unit, *map(float, p.limits), p.count, p.initial) for n, p in parameters.items()]
         self._law = trace(traced, groups, list(limits), states, efforts)
         self.parameters = parameters
         self.command_limits = limits
         self.command, self.state_names, self.effort_names = list(limits), states, efforts
-        update_wrapper(self, function)
+        update_wrapper(self, function)  # type: ignore[arg-type]
 
-    def effort(self, design, command, state=None):
+    def effort(self, design: Design, command: ArrayLike, state: ArrayLike | None = None) -> Array:
         """Efforts at one design and one row `(C,)`, `(S,)` of commands and states, or rows of them `(B, C)`, `(B, S)`; SI.
 
         A design is a list with one value for each parameter, or a dict by the names of groups.
@@ -111,7 +133,9 @@ class Law:
         efforts = self._law.efforts(self._design(design), *rows)
         return efforts if _is_batch(command) else efforts[0]
 
-    def vjp(self, design, command, state, cotangent):
+    def vjp(
+        self, design: Design, command: ArrayLike, state: ArrayLike | None, cotangent: ArrayLike
+    ) -> tuple[Array, Array, Array]:
         """The way back: cotangents by the design `(U,)` (summed over rows), by commands and by states, from those of efforts.
 
         It is what an automatic differentiation of another library needs, `torch.autograd.Function.backward` for one.
@@ -126,24 +150,24 @@ class Law:
             return by_design, by_command, by_state
         return by_design, by_command[0], by_state[0]
 
-    def gradcheck(self, design, command, state=None):
+    def gradcheck(self, design: Design, command: ArrayLike, state: ArrayLike | None = None) -> float:
         """Compares the derivatives with finite differences at a point; returns the largest relative error, or raises."""
         return self._law.gradcheck(self._design(design), *self._rows(command, state))
 
-    def graph(self):
+    def graph(self) -> str:
         """The computational graph as SVG; a notebook shows a law by it."""
         return self._law.svg()
 
     _repr_svg_ = graph
 
-    def settings(self, prefix="joint."):
+    def settings(self, prefix: str = "joint.") -> dict[str, Any]:
         """The same law as settings of an experiment with the problem `model`, for `Experiment.set`.
 
         Its commands, states and efforts have to be called as formulas call them, `joint.knee.pos` for one; commands without a
         dot are `command.NAME`, and efforts without one `prefix` and their name.
         """
         # A law in Python computes with numbers in SI, and units are the caller's business.
-        si = lambda names: [f"si({name})" for name in names]
+        si: Callable[[list[str]], list[str]] = lambda names: [f"si({name})" for name in names]
         design = [
             name if parameter.count == 1 else f"{name}[{i}]"
             for name, parameter in self.parameters.items()
@@ -158,22 +182,22 @@ class Law:
             "task.design": {name: _table(parameter) for name, parameter in self.parameters.items()},
         }
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         design = ", ".join(self.parameters) or "nothing designed"
         return f"Law({design}; {', '.join(self.command + self.state_names)} to {', '.join(self.effort_names)})"
 
-    def _design(self, design):
+    def _design(self, design: Design) -> list[float]:
         if not isinstance(design, dict):
             return [float(value) for value in design]
         if set(design) != set(self.parameters):
             raise ValueError(f"the design has {', '.join(design)}, and the law {', '.join(self.parameters)}")
-        values = []
+        values: list[float] = []
         for name in self.parameters:
             value = design[name]
             values.extend(map(float, value) if hasattr(value, "__len__") else [float(value)])
         return values
 
-    def _rows(self, command, state):
+    def _rows(self, command: ArrayLike, state: ArrayLike | None) -> tuple[Array, Array]:
         import numpy as np
 
         command = np.atleast_2d(np.asarray(command, "float64"))
@@ -182,9 +206,10 @@ class Law:
         return command, np.atleast_2d(np.asarray(state, "float64"))
 
 
-def _table(parameter):
+def _table(parameter: Parameter) -> dict[str, Any]:
+    quantity: Callable[[float], str | float]
     quantity = lambda value: f"{float(value)!r} {parameter.unit}" if parameter.unit else float(value)
-    table = {"limits": [quantity(value) for value in parameter.limits]}
+    table: dict[str, Any] = {"limits": [quantity(value) for value in parameter.limits]}
     if parameter.initial is not None:
         table["initial"] = quantity(parameter.initial)
     if parameter.count > 1:
@@ -192,11 +217,11 @@ def _table(parameter):
     return table
 
 
-def _names(names):
+def _names(names: Iterable[str]) -> list[str]:
     return [names] if isinstance(names, str) else list(names)
 
 
-def _is_batch(value):
+def _is_batch(value: ArrayLike) -> bool:
     import numpy as np
 
     return np.ndim(value) == 2
@@ -214,7 +239,7 @@ _FORMULAS = {
 }  # fmt: skip
 
 
-def _ufunc(ufunc, method, inputs, options):
+def _ufunc(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict[str, Any] | None) -> Any:
     """What numpy's functions do to traced numbers, and to arrays beside them."""
     import numpy as np
 
@@ -227,7 +252,7 @@ def _ufunc(ufunc, method, inputs, options):
     else:
         raise TypeError(f"numpy.{ufunc.__name__} is no function of laws; these are: {', '.join(sorted(_FORMULAS))}, power")
 
-    def boxed(value):
+    def boxed(value: Any) -> Any:
         if not isinstance(value, Number):
             return value
         box = np.empty((), object)
@@ -237,7 +262,7 @@ def _ufunc(ufunc, method, inputs, options):
     return np.frompyfunc(operation, len(inputs), 1)(*map(boxed, inputs))
 
 
-def _method(number, name):
+def _method(number: Number, name: str) -> Callable[..., Number | float]:
     """What an array of traced numbers asks its elements for: functions by numpy's names."""
     if name.startswith("_") or name not in _FORMULAS:
         raise AttributeError(f"a law's number has no {name}")

@@ -1,12 +1,30 @@
 """Environments in Python as problems: a law and a design in front of them, this program's learners behind."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from . import _hwasp
 from .errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from typing import Any, TypeAlias
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from .laws import Law
+
+    #: Places in the observation, or a function of environment and observation.
+    State: TypeAlias = Sequence[int] | Callable[[Any, NDArray[Any]], ArrayLike]
 
 __all__ = ["register_problem"]
 
 
-def register_problem(name, make, *, law=None, state=None, build=None, shaped_by=(), time_step=None, horizon=None, about=""):
+def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | None = None, state: State | None = None,
+                     build: Callable[[Any, NDArray[np.float64]], object] | None = None, shaped_by: Iterable[str] = (),
+                     time_step: float | None = None, horizon: int | None = None, about: str = "") -> None:  # fmt: skip
     """Registers a problem whose world is a Gymnasium environment; experiments name it as `{"task": {"problem": name}}`.
 
     - `name`: lower-case letters, digits and hyphens. A problem of this name that was registered before is replaced.
@@ -37,7 +55,7 @@ def register_problem(name, make, *, law=None, state=None, build=None, shaped_by=
     })  # fmt: skip
 
 
-def _maker(make):
+def _maker(make: str | Callable[[], Any]) -> Callable[[], Any]:
     if isinstance(make, str):
         import gymnasium
 
@@ -47,7 +65,7 @@ def _maker(make):
     return make
 
 
-def _told(env, law, state, time_step, horizon):
+def _told(env: Any, law: Law | None, state: State | None, time_step: float | None, horizon: int | None) -> dict[str, Any]:
     import numpy as np
 
     if hasattr(env, "num_envs"):
@@ -73,7 +91,7 @@ def _told(env, law, state, time_step, horizon):
         free = [name for name, limits in law.command_limits.items() if limits is None]
         if free:
             raise InputError(f"the commands {', '.join(free)} have no limits: command={{{free[0]!r}: (-1, 1)}}")
-        command = [(name, float(lo), float(hi)) for name, (lo, hi) in law.command_limits.items()]
+        command = [(name, float(lo), float(hi)) for name, (lo, hi) in law.command_limits.items()]  # type: ignore[misc]
         places = _places(law.state_names, state, count)
     spec = getattr(env, "spec", None)
     horizon = horizon or getattr(spec, "max_episode_steps", None)
@@ -90,7 +108,7 @@ def _told(env, law, state, time_step, horizon):
     }  # fmt: skip
 
 
-def _places(names, state, count):
+def _places(names: list[str], state: State | None, count: int) -> list[int]:
     if callable(state) or (state is None and not names):
         return []
     if state is None:

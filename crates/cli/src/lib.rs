@@ -15,6 +15,7 @@ mod args;
 mod caller;
 mod commands;
 mod failure;
+mod given;
 mod grid_progress;
 mod log;
 mod output;

@@ -15,8 +15,8 @@ use hwasp_training::{
     warm_start,
 };
 
-use crate::commands::{executor, run_folder, saved_run};
 use crate::failure::Failure;
+use crate::given::{executor, run_folder, saved_run};
 use crate::{output, report};
 
 /// A training that is asked for.

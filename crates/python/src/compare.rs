@@ -13,9 +13,9 @@ use crate::catalogue::catalogue;
 use crate::command;
 use crate::environment::raised;
 use crate::error::{self, Wrong};
-use crate::experiment::{Experiment, MOST_THREADS};
+use crate::experiment::Experiment;
 use crate::log;
-use crate::training::attended;
+use crate::training::{MOST_THREADS, attended};
 
 /// Nobody watches; what fails is told by the table.
 struct Quiet;

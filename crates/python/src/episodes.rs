@@ -13,7 +13,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::environment::raised;
 use crate::error::{self, Wrong};
-use crate::experiment::{Experiment, MOST_THREADS};
+use crate::experiment::Experiment;
+use crate::training::MOST_THREADS;
 
 /// The most environments of one vector.
 const MOST_LANES: usize = 65_536;

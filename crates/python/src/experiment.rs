@@ -1,12 +1,10 @@
 //! Experiments.
 
 use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
-use hwasp_cli::{Training, What, checked};
+use hwasp_cli::{What, checked};
 use hwasp_experiment::{Layers, load, resolve};
 use hwasp_settings::Folder;
 use hwasp_training::Assembly;
@@ -14,11 +12,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::catalogue::catalogue;
-use crate::error::{self, Wrong};
-use crate::run::Run;
-use crate::training::{Told, train};
+use crate::error::Wrong;
+use crate::log;
+use crate::training::{asked, train};
 use crate::value::{kind, plain, text, toml_value};
-use crate::{command, log};
 
 /// An experiment: what is trained, in which world, by what learner. It never changes: `set` gives another one.
 #[pyclass(frozen, module = "hwasp")]
@@ -152,26 +149,8 @@ impl Experiment {
         checkpoint_every: f64,
         tensorboard: bool,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<Run> {
+    ) -> PyResult<PathBuf> {
         let what = What::Anew { layers: self.layers.clone(), method: None, learned, out };
-        train(py, training(py, what, threads, checkpoint_every, tensorboard)?, Told::of(watch))
+        train(py, asked(py, what, threads, checkpoint_every, tensorboard)?, watch)
     }
 }
-
-/// A training as keywords ask for it.
-pub(crate) fn training(
-    py: Python<'_>,
-    what: What,
-    threads: usize,
-    checkpoint_every: f64,
-    tensorboard: bool,
-) -> PyResult<Training> {
-    let threads = NonZeroUsize::new(threads).filter(|threads| threads.get() <= MOST_THREADS);
-    let threads = threads.ok_or_else(|| error::input(format!("threads is from 1 to {MOST_THREADS}")))?;
-    let checkpoint_every = Duration::try_from_secs_f64(checkpoint_every)
-        .map_err(|_| error::input(format!("checkpoint_every is a time in s, not {checkpoint_every}")))?;
-    Ok(Training { what, threads, checkpoint_every, tensorboard, command_line: command::line(py) })
-}
-
-/// The most threads that one may ask for.
-pub(crate) const MOST_THREADS: usize = 1024;

@@ -1,6 +1,6 @@
 //! Runs: what a training left on the disk.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use hwasp_cli::What;
@@ -15,10 +15,10 @@ use pyo3::types::PyDict;
 
 use crate::catalogue::catalogue;
 use crate::error::Wrong;
-use crate::experiment::{Experiment, MOST_THREADS, training};
+use crate::experiment::Experiment;
 use crate::log;
 use crate::policy::Policy;
-use crate::training::{Told, train};
+use crate::training::{MOST_THREADS, asked, train};
 use crate::value::plain;
 
 /// A run folder: its experiment, design, policy, curves and figures.
@@ -29,18 +29,6 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    pub(crate) fn at(py: Python<'_>, path: &Path) -> PyResult<Self> {
-        log::begin();
-        let saved = py.detach(|| -> Result<SavedRun, Wrong> {
-            if path.is_dir() {
-                return SavedRun::open(path, &catalogue()).map_err(Wrong::input);
-            }
-            let what = if path.exists() { "is not a folder" } else { "does not exist" };
-            Err(Wrong::input(format!("{} {what}; name a run folder, as train() writes one", path.display())))
-        })?;
-        Ok(Self { path: path.to_owned(), saved: Arc::new(saved) })
-    }
-
     fn trained(&self) -> Result<Vec<f32>, Wrong> {
         self.saved.params().map_err(Wrong::input)
     }
@@ -50,7 +38,15 @@ impl Run {
 impl Run {
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::at(py, &path)
+        log::begin();
+        let saved = py.detach(|| -> Result<SavedRun, Wrong> {
+            if path.is_dir() {
+                return SavedRun::open(&path, &catalogue()).map_err(Wrong::input);
+            }
+            let what = if path.exists() { "is not a folder" } else { "does not exist" };
+            Err(Wrong::input(format!("{} {what}; name a run folder, as train() writes one", path.display())))
+        })?;
+        Ok(Self { path, saved: Arc::new(saved) })
     }
 
     #[getter]
@@ -209,9 +205,8 @@ impl Run {
         checkpoint_every: f64,
         tensorboard: bool,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<Self> {
-        let training = training(py, What::Resume(self.path.clone()), threads, checkpoint_every, tensorboard)?;
-        train(py, training, Told::of(watch))
+    ) -> PyResult<PathBuf> {
+        train(py, asked(py, What::Resume(self.path.clone()), threads, checkpoint_every, tensorboard)?, watch)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Trainings: they run on a thread of their own, while the caller's thread hears of them and of signals.
 
 use std::any::Any;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use hwasp_cli::{Session, Training};
+use hwasp_cli::{Session, Training, What};
 use hwasp_runs::metrics::{LEARNER, TERM};
 use hwasp_training::{Event, Observer, ObserverError};
 use pyo3::prelude::*;
@@ -16,25 +17,15 @@ use pyo3::types::{PyBool, PyDict};
 
 use crate::catalogue::catalogue;
 use crate::environment::raised;
-use crate::error::Wrong;
-use crate::log;
-use crate::run::Run;
+use crate::error::{self, Wrong};
+use crate::{command, log};
 
+/// The most threads that one may ask for.
+pub(crate) const MOST_THREADS: usize = 1024;
 /// How often signals are looked for where nothing happens.
 const PATIENCE: Duration = Duration::from_millis(50);
 /// Rows that may wait for whoever watches; then the training waits.
 const WAITING: usize = 64;
-
-/// Who watches a training.
-pub(crate) struct Told {
-    watch: Option<Py<PyAny>>,
-}
-
-impl Told {
-    pub(crate) fn of(watch: Option<Py<PyAny>>) -> Self {
-        Self { watch }
-    }
-}
 
 /// What there is to tell.
 enum News {
@@ -81,15 +72,30 @@ impl Observer for Teller {
     }
 }
 
+/// A training as keywords ask for it.
+pub(crate) fn asked(
+    py: Python<'_>,
+    what: What,
+    threads: usize,
+    checkpoint_every: f64,
+    tensorboard: bool,
+) -> PyResult<Training> {
+    let threads = NonZeroUsize::new(threads).filter(|threads| threads.get() <= MOST_THREADS);
+    let threads = threads.ok_or_else(|| error::input(format!("threads is from 1 to {MOST_THREADS}")))?;
+    let checkpoint_every = Duration::try_from_secs_f64(checkpoint_every)
+        .map_err(|_| error::input(format!("checkpoint_every is a time in s, not {checkpoint_every}")))?;
+    Ok(Training { what, threads, checkpoint_every, tensorboard, command_line: command::line(py) })
+}
+
 /// Trains to the end. Whoever watches is called with a dict for each row, on the calling thread; where the answer is `False`
-/// the training stops, and can be resumed.
-pub(crate) fn train(py: Python<'_>, training: Training, told: Told) -> PyResult<Run> {
+/// the training stops, and can be resumed. Returns the run folder.
+pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>) -> PyResult<PathBuf> {
     log::begin();
     let session = py.detach(|| Session::begin(training, &catalogue()).map_err(Wrong::from))?;
     let path = session.path().to_owned();
     let stop = Arc::new(AtomicBool::new(false));
     let (sender, news) = sync_channel(WAITING);
-    let teller = Teller { news: told.watch.is_some().then(|| sender.clone()), path: path.clone() };
+    let teller = Teller { news: watch.is_some().then(|| sender.clone()), path: path.clone() };
     let stopped = Arc::clone(&stop);
     let work = thread::Builder::new().name("hwasp-train".to_owned()).spawn(move || {
         let (mut teller, alive) = (teller, sender);
@@ -97,7 +103,7 @@ pub(crate) fn train(py: Python<'_>, training: Training, told: Told) -> PyResult<
         drop((teller, alive));
         ended
     })?;
-    let listened = listen(py, news, told.watch.as_ref(), &stop);
+    let listened = listen(py, news, watch.as_ref(), &stop);
     if let Err(Unheard { error, at_once: true }) = listened {
         // It finishes its iteration and its checkpoint by itself.
         return Err(error);
@@ -110,7 +116,7 @@ pub(crate) fn train(py: Python<'_>, training: Training, told: Told) -> PyResult<
     let ended = ended.map_err(broken)?;
     match (listened, ended) {
         (Err(Unheard { error, .. }), _) => Err(error),
-        (Ok(Heard::Stopped), Err(_)) | (_, Ok(())) => Run::at(py, &path),
+        (Ok(Heard::Stopped), Err(_)) | (_, Ok(())) => Ok(path),
         (Ok(Heard::ToTheEnd), Err(error)) => Err(error.into()),
     }
 }

@@ -23,19 +23,17 @@ pub(crate) mod tolerances;
 pub(crate) mod train;
 
 use std::io;
-use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_core::{Executor, Serial, Threads};
 use hwasp_experiment::{Catalogue, Experiment, Layers, load, resolve};
-use hwasp_runs::SavedRun;
 use hwasp_training::{Assembly, StandInKind};
 
 use crate::args::{LawRateArg, NearerArgs, SettingsArgs};
 use crate::caller::Caller;
 use crate::failure::{Failure, OTHER_FILE};
+use crate::given::{executor, run_folder, saved_run};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
 fn layers(
@@ -73,11 +71,6 @@ fn experiment(
     Ok((spec, assembly))
 }
 
-/// The run that was written to a folder.
-pub(crate) fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
-    SavedRun::open_with(run_folder(path)?, set, catalogue).map_err(Failure::input)
-}
-
 /// The world nearer to the built robot that was asked for, if one was.
 fn stand_in(asked: &NearerArgs, assembly: &Assembly) -> Result<Option<StandInKind>, Failure> {
     let asked = match (asked.native_tendons, asked.law_rate) {
@@ -102,16 +95,6 @@ fn stand_in(asked: &NearerArgs, assembly: &Assembly) -> Result<Option<StandInKin
     })
 }
 
-/// The folder of a run, if there is a folder at all.
-pub(crate) fn run_folder(path: &Path) -> Result<&Path, Failure> {
-    if path.is_dir() {
-        return Ok(path);
-    }
-    let what = if path.exists() { "is not a folder" } else { "does not exist" };
-    let hint = "name a run folder; `hwasp train` says where it writes one, under runs/ unless --out names another";
-    Err(Failure::input(format!("{} {what}\n  = hint: {hint}", path.display())))
-}
-
 /// Writes a file that --out names.
 fn write_out(path: &Path, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(|error| unwritten(path, &error))
@@ -131,10 +114,6 @@ fn writable(path: &Path) -> Result<(), Failure> {
 fn unwritten(path: &Path, error: &io::Error) -> Failure {
     let error = io::Error::new(error.kind(), format!("`{}` cannot be written: {error}", path.display()));
     Failure::from(error).hint(OTHER_FILE)
-}
-
-pub(crate) fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
-    if threads.get() == 1 { Ok(Box::new(Serial)) } else { Ok(Box::new(Threads::new(threads.get())?)) }
 }
 
 /// What the first Ctrl-C or SIGTERM sets; the second ends the program. To be called once.

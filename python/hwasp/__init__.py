@@ -21,7 +21,7 @@ from .functions import *  # noqa: F403 - the functions of laws, by name
 from .laws import Law, Parameter, law
 from .policy import Policy
 from .registry import make, make_vec, register_gymnasium as _register_gymnasium
-from .worlds import register_problem
+from .worlds import forget_problem, register_problem
 
 __all__ = [
     "ClosedError",
@@ -37,6 +37,7 @@ __all__ = [
     "__version__",
     "compare",
     "experiments",
+    "forget_problem",
     "functions",
     "law",
     "laws",

@@ -64,6 +64,9 @@ class Experiment:
     def check(self) -> str:
         """Tries the world with random commands and designs, and tells what is in the experiment."""
 
+    def placement(self) -> str | None:
+        """Where the file itself says that the design sits, which no other method changes; None where the method decides."""
+
     @property
     def name(self) -> str:
         """What it is called."""
@@ -143,9 +146,9 @@ class Run:
         """The learning curve: arrays `(rows,)` by the names of the columns, of integers for iterations and steps."""
 
     def evaluation(
-        self, *, episodes: int | None, seed: int | None, settings: Sequence[str], native: bool, threads: int
+        self, *, episodes: int | None, seed: int | None, settings: dict[str, Any] | None, native: bool, threads: int
     ) -> dict[str, Any]:
-        """Evaluates the design as built; `settings` are `KEY=VALUE`, `native` is the world of the built robot."""
+        """Evaluates the design as built, under other settings by key; `native` is the world of the built robot."""
 
     def exported(self, out: str | PathLike[str] | None, kinds: Sequence[str], samples: int | None) -> list[Path]:
         """Writes files for other programs, of all kinds where none is named; returns their paths."""
@@ -310,6 +313,8 @@ class Number:
     def __le__(self, other: Number | float, /) -> Number: ...
     def __gt__(self, other: Number | float, /) -> Number: ...
     def __ge__(self, other: Number | float, /) -> Number: ...
+    def __eq__(self, other: Number | float, /) -> Number: ...  # type: ignore[override]
+    def __ne__(self, other: Number | float, /) -> Number: ...  # type: ignore[override]
     def __bool__(self) -> bool:
         """Raises `TypeError`: a law does not branch on values."""
 

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 
 from . import _hwasp
 from .errors import InputError
-from .runs import Experiment
+from .runs import Experiment, cores
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,7 +45,10 @@ class _Stepped:
         if method is None:
             # Another learner cannot follow a gradient through the law: it has the design in its actions.
             method = {"hwasp": "minimal", "minimal": "minimal", "episode": "episode"}.get(experiment.method, "fixed")
-        self.experiment = experiment.set(method=method)
+        placement = {"hwasp": "graph", "minimal": "action", "episode": "episode", "fixed": "fixed"}.get(method)
+        if placement is None:
+            raise InputError(f"method = {method!r}; an environment has 'minimal', 'episode', 'fixed' or 'hwasp'")
+        self.experiment = experiment.set({"method": method, "design.placement": placement})
         self._episodes = _hwasp.Episodes(
             self.experiment._native,
             lanes=num_envs,
@@ -199,7 +202,7 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
             raise InputError(f"render_mode = {render_mode!r}; many environments are not drawn")
         autoreset_mode = AutoresetMode(autoreset_mode)
         if threads is None:
-            threads = _cores()
+            threads = cores()
         self.single_observation_space, self.single_action_space = self._open(
             experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress, horizon
         )
@@ -210,7 +213,8 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         self.autoreset_mode, self._copy = autoreset_mode, copy
         self.metadata = {"render_modes": [], "autoreset_mode": autoreset_mode}
         self._arrays = self._new_arrays()
-        self._seeded = False
+        # Which of them have a seed to go on with.
+        self._seeded = np.zeros(num_envs, bool)
 
     def _new_arrays(self) -> tuple[Observation, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         n = self.num_envs
@@ -221,22 +225,25 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         n, options = self.num_envs, options or {}
-        first = seed if isinstance(seed, (int, np.integer)) else None
-        super().reset(seed=None if first is None else int(first))
-        if seed is None and not self._seeded:
-            first = self._seed()
+        super().reset(seed=int(seed) if isinstance(seed, (int, np.integer)) else None)
+        mask = np.ones(n, bool) if options.get("reset_mask") is None else np.asarray(options["reset_mask"], bool)
         seeds: list[int | None]
-        if first is not None:
-            seeds = [int(first) + i for i in range(n)]
+        if seed is None:
+            seeds = [None] * n
+        elif isinstance(seed, (int, np.integer)):
+            seeds = [int(seed) + i for i in range(n)]
         else:
-            seeds = [None] * n if seed is None else list(seed)  # type: ignore[arg-type]
-        mask = options.get("reset_mask")
-        if mask is not None:
-            mask = np.asarray(mask, bool).tolist()
-        for i in range(n) if "design" in options else ():
-            self._designed(i, options["design"])
-        self._seeded = True
-        return self._episodes.reset(seeds, mask), {}
+            seeds = list(seed)
+        if mask.shape != (n,) or len(seeds) != n:
+            raise InputError(f"reset_mask and a list of seeds have one entry for each of {n} environments")
+        fresh = [i for i in np.flatnonzero(mask) if seeds[i] is None and not self._seeded[i]]
+        first = self._seed() if fresh else 0
+        for i in fresh:
+            seeds[i] = first + int(i)
+        for i in np.flatnonzero(mask) if "design" in options else ():
+            self._designed(int(i), options["design"])
+        self._seeded |= mask
+        return self._episodes.reset(seeds, mask.tolist()), {}
 
     def step(
         self, actions: NDArray[Any]
@@ -264,9 +271,3 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         """The design of environment `i` by the names of parameters, SI."""
         names = [name for name, _, _ in self._episodes.parameters()]
         return dict(zip(names, self._episodes.design(i).tolist()))
-
-
-def _cores() -> int:
-    import os
-
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -47,6 +47,8 @@ class _Named:
         self._values = values
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
         try:
             return self._values[name]
         except KeyError:
@@ -99,6 +101,16 @@ class Law:
         limits: dict[str, tuple[float, float] | None]
         limits = dict(command) if isinstance(command, dict) else {name: None for name in _names(command)}
         states, efforts = _names(state), _names(effort)
+        for what, names in [("commands and states", [*(limits if isinstance(command, dict) else _names(command)), *states]), ("efforts", efforts)]:
+            twice = [name for i, name in enumerate(names) if name in names[:i]]
+            if twice:
+                raise ValueError(f"two {what} of the law are called {twice[0]}")
+        for name, limit in limits.items():
+            if limit is None:
+                continue
+            low, high = limit
+            if not float(low) < float(high):
+                raise ValueError(f"the limits {limit} of the command {name} are no interval")
 
         def traced(uniforms: Iterable[Number], commands: Iterable[Number], columns: Iterable[Number]) -> list[Any]:
             uniforms = iter(uniforms)
@@ -122,7 +134,7 @@ class Law:
         self.parameters = parameters
         self.command_limits = limits
         self.command, self.state_names, self.effort_names = list(limits), states, efforts
-        update_wrapper(self, function)  # type: ignore[arg-type]
+        update_wrapper(self, function)
 
     def effort(self, design: Design, command: ArrayLike, state: ArrayLike | None = None) -> Array:
         """Efforts at one design and one row `(C,)`, `(S,)` of commands and states, or rows of them `(B, C)`, `(B, S)`; SI.
@@ -132,6 +144,8 @@ class Law:
         rows = self._rows(command, state)
         efforts = self._law.efforts(self._design(design), *rows)
         return efforts if _is_batch(command) else efforts[0]
+
+    __call__ = effort
 
     def vjp(
         self, design: Design, command: ArrayLike, state: ArrayLike | None, cotangent: ArrayLike

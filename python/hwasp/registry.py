@@ -43,7 +43,7 @@ def env_id(experiment: str) -> str:
 
 def register_gymnasium() -> None:
     """Lets Gymnasium know the environments: now where it is there, or as soon as somebody imports it."""
-    if "gymnasium" in sys.modules:
+    if sys.modules.get("gymnasium") is not None:
         _register()
     else:
         sys.meta_path.insert(0, _WhenImported())
@@ -63,19 +63,26 @@ def _register() -> None:
 
 
 class _WhenImported(importlib.abc.MetaPathFinder):
-    """Waits for Gymnasium, whose import takes longer than ours."""
+    """Waits for Gymnasium, whose import takes longer than ours. Whether it is there may be asked before."""
+
+    _asking = False
 
     def find_spec(self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
-        if name != "gymnasium":
+        if name != "gymnasium" or self._asking:
             return None
-        sys.meta_path.remove(self)
-        spec = importlib.util.find_spec(name)
+        self._asking = True
+        try:
+            spec = importlib.util.find_spec(name)
+        finally:
+            self._asking = False
         if spec is not None and spec.loader is not None:
             load = spec.loader.exec_module
 
             def exec_module(module: ModuleType) -> None:
                 load(module)
-                _register()
+                if self in sys.meta_path:
+                    sys.meta_path.remove(self)
+                    _register()
 
             spec.loader.exec_module = exec_module  # type: ignore[method-assign]
         return spec

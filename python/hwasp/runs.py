@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from . import _hwasp
 from ._progress import watcher
+from .errors import InputError
 from .policy import Policy
 
 if TYPE_CHECKING:
@@ -54,7 +55,14 @@ class Experiment:
         >>> Experiment.load("reach").set({"ppo.clip_ratio": 0.1, "task.goal": "30 cm"}, seed=3, method="minimal").seed
         3
         """
-        return type(self)(self._native.set(settings, **more))
+        asked = {**(settings or {}), **more}
+        placement = self._native.placement()
+        if "method" in asked and placement is not None and "design.placement" not in asked:
+            raise InputError(
+                f'this experiment says design.placement = "{placement}" itself, so that another method would change little of it: '
+                "set design.placement, too, or begin with the experiment that it was made of"
+            )
+        return type(self)(self._native.set(asked))
 
     def check(self) -> Text:
         """Tries the world with random commands and designs, and tells what is in the experiment; raises `InputError` with
@@ -131,6 +139,11 @@ def _restored(text: str, files: dict[str, bytes]) -> Experiment:
     return Experiment(_hwasp.Experiment.unpacked(text, files))
 
 
+def cores() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 class Text(str):
     """A text that shows its lines where a value is shown."""
 
@@ -140,7 +153,7 @@ class Text(str):
         return str(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DesignGroup:
     """A group of design parameters: arrays of values as trained and as they are to be built, in the SI unit `unit`."""
 
@@ -234,9 +247,8 @@ class Run:
         - `settings`: other values of the experiment, by key, to see what the result is worth in another world.
         - `native`: in the world that stands in for the built robot, where there is one.
         """
-        assigned = [f"{key}={_assigned(value)}" for key, value in (settings or {}).items()]
         return self._native.evaluation(
-            episodes=episodes, seed=seed, settings=assigned, native=native, threads=threads
+            episodes=episodes, seed=seed, settings=settings, native=native, threads=threads
         )
 
     def export(self, out: PathLike | None = None, kinds: str | Iterable[str] = (), samples: int | None = None) -> list[Path]:
@@ -266,6 +278,9 @@ class Run:
             watch.close()
         return Run.open(path)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Run.open, (os.fspath(self.path),))
+
     def __repr__(self) -> str:
         design = "; ".join(f"{name} {group!r}" for name, group in self.design.items())
         state = "" if self.finished else ", not finished"
@@ -278,11 +293,6 @@ class Run:
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 40em; border: 1px solid #ccc"></iframe>'
 
 
-def _assigned(value: Any) -> str:
-    """A value as `--set` takes it."""
-    return value if isinstance(value, str) else json.dumps(value)
-
-
 class Comparison:
     """Methods against each other, in a folder: `table` as Markdown, `figures` as `comparison.json` has them."""
 
@@ -292,7 +302,7 @@ class Comparison:
     @property
     def figures(self) -> Any:
         """The figures of `comparison.json`."""
-        return json.loads((self.path / "comparison.json").read_text())
+        return json.loads((self.path / "comparison.json").read_text(encoding="utf-8"))
 
     def __repr__(self) -> str:
         return self.table
@@ -312,13 +322,18 @@ def compare(experiment: Loadable, methods: str | Iterable[str] = ("hwasp", "mini
     experiment = Experiment.load(experiment)
     out = Path("runs") / f"compare-{experiment.name}" if out is None else Path(out)
     methods = [methods] if isinstance(methods, str) else list(methods)
+    if (placement := experiment._native.placement()) is not None and len(methods) > 1:
+        raise InputError(
+            f'this experiment says design.placement = "{placement}" itself, so that its methods would be alike: begin with the '
+            "experiment that it was made of"
+        )
     table = _hwasp.compare(
         experiment._native,
         methods=methods,
         seeds=seeds,
         first_seed=first_seed,
         out=os.fspath(out),
-        threads=os.cpu_count() or 1 if threads is None else threads,
+        threads=cores() if threads is None else threads,
         threshold=threshold,
     )
     return Comparison(out, table)

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     #: Places in the observation, or a function of environment and observation.
     State: TypeAlias = Sequence[int] | Callable[[Any, NDArray[Any]], ArrayLike]
 
-__all__ = ["register_problem"]
+#: Steps of an episode, at most.
+MOST_STEPS = 100_000
+
+__all__ = ["forget_problem", "register_problem"]
 
 
 def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | None = None, state: State | None = None,
@@ -49,10 +52,17 @@ def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | Non
         told = _told(env, law, state, time_step, horizon)
     finally:
         env.close()
+    if not isinstance(shaped_by, (list, tuple)):
+        raise TypeError(f"shaped_by names groups of parameters, ['gain'] for one, and is {shaped_by!r}")
     _hwasp.register({
         "name": name, "about": about, "make": maker, "law": None if law is None else law._law,
         "build": build, "shaped_by": list(shaped_by), **told,
     })  # fmt: skip
+
+
+def forget_problem(name: str) -> None:
+    """Takes a problem out that was registered here. Those that come along stay."""
+    _hwasp.forget(name)
 
 
 def _maker(make: str | Callable[[], Any]) -> Callable[[], Any]:
@@ -78,6 +88,8 @@ def _told(env: Any, law: Law | None, state: State | None, time_step: float | Non
     if acted.dtype not in (np.float32, np.float64):
         raise InputError(f"actions are of {acted.dtype}, where float32 or float64 is needed")
     count, size = int(np.prod(seen.shape)), int(np.prod(acted.shape))
+    if not count or not size:
+        raise InputError(f"an observation has {count} numbers and an action {size}: there has to be one of each, at least")
     low, high = acted.low.ravel().astype(float), acted.high.ravel().astype(float)
     if law is None:
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -94,13 +106,18 @@ def _told(env: Any, law: Law | None, state: State | None, time_step: float | Non
         command = [(name, float(lo), float(hi)) for name, (lo, hi) in law.command_limits.items()]  # type: ignore[misc]
         places = _places(law.state_names, state, count)
     spec = getattr(env, "spec", None)
-    horizon = horizon or getattr(spec, "max_episode_steps", None)
-    if not horizon:
+    if horizon is None:
+        horizon = getattr(spec, "max_episode_steps", None)
+    if horizon is None:
         raise InputError("the environment says no max_episode_steps: give the horizon of an episode")
+    if not 1 <= horizon <= MOST_STEPS:
+        raise InputError(f"horizon = {horizon}; it is from 1 to {MOST_STEPS}")
     if time_step is None:
         time_step = getattr(env.unwrapped, "dt", None)
     if time_step is None:
         time_step = 1 / (getattr(env, "metadata", None) or {}).get("render_fps", 20)
+    if not 0 < time_step < float("inf"):
+        raise InputError(f"time_step = {time_step}; it is a time in s, more than 0")
     return {
         "observation": [(f"obs[{i}]", "") for i in range(count)], "state": state if callable(state) else None, "places": places,
         "command": command, "shape": list(acted.shape), "single": acted.dtype == np.float32,

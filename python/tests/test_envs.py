@@ -151,6 +151,17 @@ def test_episodes_are_those_of_a_training():
     assert np.array_equal(starts, again)
 
 
+def test_lanes_without_a_seed_have_seeds_of_their_own():
+    """They started alike."""
+    for seed, options in [([None] * 4, None), (None, None), (None, {"reset_mask": [True, True, True, True]})]:
+        start, _ = hwasp.make_vec("mass-spring", 4).reset(seed=seed, options=options)
+        assert len({tuple(row) for row in start}) == 4
+    env = hwasp.make_vec("mass-spring", 4, method="fixed")
+    env.reset(options={"reset_mask": [True, False, False, True], "design": {"stiffness": 3.0}})
+    assert [env.design(i)["stiffness[0]"] == 3.0 for i in range(4)] == [True, False, False, True]
+    assert len({tuple(row) for row in env.reset(options={"reset_mask": [False, True, True, False]})[0]}) == 4
+
+
 def test_scales_are_those_of_the_experiment():
     scaled, si = (hwasp.make("mass-spring", method="fixed", scale_observations=s, scale_actions=s) for s in (True, False))
     assert (scaled.action_space.high == 1).all() and not (si.action_space.high == 1).all()
@@ -192,8 +203,10 @@ def test_what_cannot_be_is_told():
     with pytest.raises(hwasp.InputError):
         env.reset(seed=[1, 2, 3])
     env.reset(seed=[1, 1])
+    with pytest.raises(hwasp.InputError, match="no number 7"):
+        env.design(7)
     env.close()
-    for call in [lambda: env.step(np.zeros((2, 2))), lambda: env.reset(seed=0)]:
+    for call in [lambda: env.step(np.zeros((2, 2))), lambda: env.reset(seed=0), env.design]:
         with pytest.raises(hwasp.ClosedError, match="closed"):
             call()
     env.close()
@@ -206,6 +219,12 @@ def test_an_episode_that_is_over_goes_on_only_after_a_reset():
     assert ends == [(False, False), (False, False), (False, True)]
     with pytest.raises(hwasp.InputError, match="is over"):
         env.step(np.zeros(1, np.float32))
+
+
+def test_a_complete_experiment_is_the_same_environment():
+    """One of a run kept its placement, and its environment had efforts for actions."""
+    run = hwasp.Experiment.load("mass-spring").set({"train.env_steps": 20_000}).train("run", progress=False)
+    assert hwasp.make(run.experiment).action_names == hwasp.make("mass-spring").action_names
 
 
 def test_buffers_are_new_unless_asked_otherwise():

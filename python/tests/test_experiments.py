@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 import hwasp
 import numpy as np
@@ -70,6 +71,17 @@ def test_a_setting_of_another_type_is_refused(value):
         hwasp.Experiment.load("reach").set({"train": value})
 
 
+def test_another_method_is_not_half_set():
+    """A complete experiment kept the placement of its old method, without a word."""
+    complete = hwasp.Experiment.load(hwasp.Experiment.load("mass-spring").to_dict())
+    with pytest.raises(hwasp.InputError, match='design.placement = "graph"'):
+        complete.set(method="minimal")
+    with pytest.raises(hwasp.InputError, match="alike"):
+        hwasp.compare(complete, ["hwasp", "minimal"])
+    both = complete.set({"method": "minimal", "design.placement": "action"})
+    assert both.to_dict()["design"]["placement"] == "action"
+
+
 def test_check_tells_what_is_in_it():
     told = hwasp.Experiment.load("reach").check()
     assert "is sound" in told and "gear" in told and repr(told) == str(told)
@@ -103,6 +115,10 @@ def test_a_run_has_design_curve_policy_and_figures():
     assert run.evaluate(7, seed=1, threads=2)["episodes"] == 7
     with pytest.raises(hwasp.InputError, match="episodes"):
         run.evaluate(0)
+    assert run.evaluate(3, settings={"task.goal": "40 cm"}, threads=1024)["return"] != run.evaluate(3)["return"]
+    with pytest.raises(hwasp.InputError, match="threads"):
+        run.evaluate(3, threads=1025)
+    assert np.array_equal(pickle.loads(pickle.dumps(run)).params, run.params)
     with pytest.raises(hwasp.InputError, match="gear|another machine|law"):
         run.evaluate(settings={"controller.hidden": [3]})
     files = run.export("exported", ["safetensors", "onnx"])
@@ -166,6 +182,16 @@ def test_ctrl_c_keeps_a_checkpoint():
         reach(**{"train.env_steps": 2_000_000}).train("run", progress=False, callback=interrupt)
     run = hwasp.Run.open("run")
     assert not run.finished and run.design
+
+
+def test_ctrl_c_does_not_wait_for_an_evaluation():
+    run = reach().train("run", progress=False)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        run.evaluate(3_000_000)
+    assert time.monotonic() - began < 2.0
 
 
 def test_trainings_of_two_threads_do_not_meet():

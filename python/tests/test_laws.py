@@ -1,5 +1,6 @@
 """Laws in Python are the same programs as laws in text."""
 
+import copy
 import math
 
 import hwasp
@@ -100,6 +101,29 @@ def test_what_a_law_must_not_do_is_told():
         hwasp.law(design={"k": (3, 1)}, command=["x"], effort="f")(lambda d, c, s: c.x)
     with pytest.raises(hwasp.InputError, match="`furlong` is no unit"):
         hwasp.law(design={"k": hwasp.Parameter((1, 3), "furlong")}, command=["x"], effort="f")(lambda d, c, s: c.x)
+
+
+def test_equality_is_a_number_too_and_arrays_come_from_either_side():
+    @hwasp.law(command=["x", "y"], effort=["f", "g", "h"])
+    def law(design, command, state):
+        x, y = command
+        array = np.array([1.0, 2.0])
+        return [(x == y) + 2 * (x != y), np.sum(x < array) + np.sum(array >= x), np.sum(y**array)]
+
+    assert law.effort([], [1.5, 1.5]).tolist() == [1.0, 2.0, 1.5 + 1.5**2]
+    assert law.effort([], [1.5, 3.0])[0] == 2.0 and law([], [1.5, 3.0])[0] == 2.0
+    with pytest.raises(hwasp.InputError, match="no exponent"):
+        of_one(lambda x: x ** float("inf"))
+
+
+def test_names_and_limits_of_a_law_are_checked():
+    for names in [{"command": ["u", "u"], "effort": "f"}, {"command": ["u"], "effort": ["f", "f"]}, {"command": ["u"], "state": ["u"], "effort": "f"},
+                  {"command": {"u": (1, -1)}, "effort": "f"}]:  # fmt: skip
+        with pytest.raises(ValueError, match="called|interval"):
+            hwasp.law(**names)(lambda d, c, s: [c[0]] * len(names["effort"]))
+    law = hwasp.law(command=["u"], effort="f")(lambda d, c, s: copy.deepcopy(2.0) * c.u)
+    with pytest.raises(hwasp.InputError, match="a row at least"):
+        law.gradcheck([], np.zeros((0, 1)))
 
 
 def test_the_library_of_laws_is_there():

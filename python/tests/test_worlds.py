@@ -1,6 +1,7 @@
 """Gymnasium's environments as problems of this program."""
 
 import os
+import threading
 
 import hwasp
 import numpy as np
@@ -55,7 +56,7 @@ def nothing_stays_registered():
     before = set(hwasp.problems())
     yield
     for name in set(hwasp.problems()) - before:
-        hwasp._hwasp.forget(name)
+        hwasp.forget_problem(name)
 
 
 def test_a_controller_alone_learns_in_it():
@@ -142,6 +143,9 @@ def test_an_environment_that_cannot_be_made_is_told():
     ("make", "options", "says"),
     [
         (Point, {}, "horizon"),
+        (Point, {"horizon": 0}, "from 1 to"),
+        (Point, {"horizon": 40, "time_step": 0.0}, "more than 0"),
+        (Point, {"horizon": 40, "time_step": float("nan")}, "more than 0"),
         (lambda: gymnasium.make_vec("CartPole-v1", 2), {}, "vector"),
         ("CartPole-v1", {}, "Discrete"),
         (Point, {"horizon": 40, "law": spring(), "state": [7]}, "places"),
@@ -156,12 +160,59 @@ def test_what_does_not_fit_is_told(make, options, says):
         hwasp.register_problem("mine", make, **options)
 
 
+def test_what_was_raised_is_nobody_elses():
+    """An exception that waited was raised by the next call, whatever it was."""
+
+    def fails():
+        raise ZeroDivisionError("physics")
+
+    hwasp.register_problem("failing", lambda: Point(fails), horizon=40)
+    with pytest.raises(ZeroDivisionError):
+        experiment("failing").check()
+    assert "is sound" in hwasp.Experiment.load("reach").check()
+    hwasp.register_problem("point", Point, horizon=40)
+    errors = []
+
+    def trains():
+        try:
+            experiment("failing").train("failing", progress=False)
+        except ZeroDivisionError as error:
+            errors.append(error)
+
+    thread = threading.Thread(target=trains)
+    thread.start()
+    env = hwasp.make(experiment("point"))
+    for _ in range(200):
+        env.reset()
+    thread.join()
+    assert len(errors) == 1
+
+
+def test_environments_are_closed():
+    opened = []
+
+    class Closing(Point):
+        def __init__(self):
+            super().__init__()
+            opened.append(self)
+
+        def close(self):
+            opened.remove(self)
+
+    hwasp.register_problem("closing", Closing, horizon=40)
+    experiment("closing").train("run", progress=False)
+    hwasp.make_vec(experiment("closing"), 5).close()
+    assert not opened
+
+
 def test_names_are_checked():
     for name in ["Upper Case", "reach", ""]:
         with pytest.raises(hwasp.InputError):
             hwasp.register_problem(name, Point, horizon=40)
     with pytest.raises(TypeError):
         hwasp.register_problem("mine", 7)
+    with pytest.raises(TypeError, match="groups of parameters"):
+        hwasp.register_problem("mine", Point, horizon=40, shaped_by="gain")
 
 
 def test_what_is_no_environment_is_told():
@@ -182,7 +233,7 @@ def test_what_is_no_environment_is_told():
 def test_a_run_of_a_problem_that_is_not_registered_says_so():
     hwasp.register_problem("point", Point, horizon=40)
     run = experiment("point").train("run", progress=False)
-    hwasp._hwasp.forget("point")
+    hwasp.forget_problem("point")
     with pytest.raises(hwasp.InputError, match="point"):
         hwasp.Run.open(run)
 

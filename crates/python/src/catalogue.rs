@@ -25,7 +25,10 @@ pub(crate) fn add(problem: impl Problem) -> Result<(), Wrong> {
     let name = problem.name().to_owned();
     let own = hwasp_builtin::catalogue().problems().iter().any(|known| known.name() == name);
     let without = if own { catalogue.clone() } else { catalogue.without(&name) };
-    *catalogue = without.with(problem).map_err(Wrong::input)?;
+    let old = std::mem::replace(&mut *catalogue, without.with(problem).map_err(Wrong::input)?);
+    // What Python does when its objects go may come here again.
+    drop(catalogue);
+    drop(old);
     Ok(())
 }
 
@@ -47,6 +50,10 @@ pub(crate) fn forget(name: &str) {
     let own = hwasp_builtin::catalogue().problems().iter().any(|known| known.name() == name);
     if !own {
         let mut catalogue = registered();
-        *catalogue = catalogue.without(name);
+        let without = catalogue.without(name);
+        let old = std::mem::replace(&mut *catalogue, without);
+        // What Python does when its objects go may come here again.
+        drop(catalogue);
+        drop(old);
     }
 }

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::catalogue::catalogue;
 use crate::command;
-use crate::environment::raised;
+use crate::environment::Raised;
 use crate::error::{self, Wrong};
 use crate::experiment::Experiment;
 use crate::log;
@@ -48,11 +48,17 @@ pub(crate) fn compare(
     }
     let contenders = methods.iter().map(|text| Contender::parse(text)).collect::<Result<Vec<_>, _>>();
     let contenders = contenders.map_err(Wrong::input)?;
-    let grid = Grid { layers: experiment.layers().clone(), contenders, seeds: first_seed..first_seed + seeds };
+    let last = first_seed.checked_add(seeds).filter(|last| i64::try_from(*last).is_ok());
+    let last =
+        last.ok_or_else(|| error::input(format!("seeds from {first_seed} on, {seeds} of them, are too large")))?;
+    let grid = Grid { layers: experiment.layers().clone(), contenders, seeds: first_seed..last };
+    let problem = experiment.layers().clone().with_override("method", "fixed");
+    let problem = py.detach(|| hwasp_experiment::resolve(problem, None, &catalogue()));
+    let raised = Raised::of(problem.as_ref().map_or("", |spec| spec.task.name()));
     let typed = command::line(py);
     let stop = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stop);
-    let compared = attended(py, &stop, move || -> Result<String, Wrong> {
+    let compared = attended(py, Some(&stop), &raised, move || -> Result<String, Wrong> {
         let cells = grid.cells(&out, &catalogue()).map_err(Wrong::input)?;
         let first = cells.first().ok_or_else(|| Wrong::input("there is nothing to compare: name methods and seeds"))?;
         let executor = Threads::new(threads).map_err(Wrong::failed)?;
@@ -65,8 +71,5 @@ pub(crate) fn compare(
         }
         Ok(comparison.markdown())
     });
-    if let Some(error) = raised::take() {
-        return Err(error);
-    }
     Ok(compared??)
 }

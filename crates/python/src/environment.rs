@@ -1,7 +1,8 @@
 //! Environments in Python (Gymnasium's and whatever has their interface) as problems of this program: a law and a design in
 //! front of them, this program's learners, placements and ledger behind.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hwasp_core::{
     CommandPort, Dimension, End, EnvSpec, Environment, Law as CoreLaw, MakeEnvironment, Port, Step, Stream,
@@ -20,31 +21,39 @@ use crate::law::Law;
 /// Of the range of an action: how widely an effort is explored unless an experiment says otherwise.
 const EXPLORED: f64 = 0.15;
 
-/// Exceptions of environments, for whoever waits on the main thread.
-pub(crate) mod raised {
-    use std::sync::{Mutex, MutexGuard, PoisonError};
+/// The first exception of the environments of a problem, for whoever put it to work. Two trainings of one problem at the same time
+/// share it.
+#[derive(Clone, Default)]
+pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
 
-    use pyo3::PyErr;
+/// Those of the problems that were registered.
+static RAISED: Mutex<BTreeMap<String, Raised>> = Mutex::new(BTreeMap::new());
 
-    static FIRST: Mutex<Option<PyErr>> = Mutex::new(None);
+impl Raised {
+    /// That of a problem; of one that is not written in Python nothing ever comes. What an earlier use left is forgotten.
+    pub(crate) fn of(problem: &str) -> Self {
+        let raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner).get(problem).cloned().unwrap_or_default();
+        drop(raised.take());
+        raised
+    }
 
-    fn first() -> MutexGuard<'static, Option<PyErr>> {
-        FIRST.lock().unwrap_or_else(PoisonError::into_inner)
+    fn first(&self) -> MutexGuard<'_, Option<PyErr>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Keeps one, unless an earlier one waits.
-    pub(super) fn keep(error: PyErr) {
-        first().get_or_insert(error);
+    fn keep(&self, error: PyErr) {
+        self.first().get_or_insert(error);
     }
 
     /// Whether one waits.
-    pub(crate) fn waits() -> bool {
-        first().is_some()
+    pub(crate) fn waits(&self) -> bool {
+        self.first().is_some()
     }
 
     /// The first one; none waits afterwards.
-    pub(crate) fn take() -> Option<PyErr> {
-        first().take()
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.first().take()
     }
 }
 
@@ -70,6 +79,7 @@ struct Known {
     limits: Vec<(f64, f64)>,
     /// Whether efforts act; else commands do.
     acts_by_effort: bool,
+    raised: Raised,
 }
 
 /// A problem whose world is written in Python.
@@ -104,7 +114,7 @@ impl MakeEnvironment for Maker {
             Ok(Methods { step, reset, env: env.unbind() })
         });
         let fault = made.as_ref().err().map(ToString::to_string);
-        let methods = made.map_err(raised::keep).ok();
+        let methods = made.map_err(|error| self.0.raised.keep(error)).ok();
         Box::new(PythonEnvironment {
             seen: vec![0.0; spec.observation.len()],
             state: vec![0.0; spec.state.len()],
@@ -135,6 +145,15 @@ struct PythonEnvironment {
     fault: Option<String>,
 }
 
+impl Drop for PythonEnvironment {
+    /// Closes it, as whoever makes an environment of Gymnasium's has to. Where the interpreter is about to end, it closes them.
+    fn drop(&mut self) {
+        if let Some(methods) = self.methods.take() {
+            Python::try_attach(|py| drop(methods.env.call_method0(py, intern!(py, "close"))));
+        }
+    }
+}
+
 impl PythonEnvironment {
     /// Does what may raise an exception, which then waits for the main thread.
     fn attempt<T>(&mut self, work: impl FnOnce(&mut Self, Python<'_>) -> PyResult<T>) -> Option<T> {
@@ -142,7 +161,7 @@ impl PythonEnvironment {
             Ok(value) => Some(value),
             Err(error) => {
                 self.fault = Some(error.to_string());
-                raised::keep(error);
+                self.known.raised.keep(error);
                 None
             }
         })
@@ -309,7 +328,7 @@ pub(crate) fn register(py: Python<'_>, told: Told) -> PyResult<()> {
     let observation = told.observation.into_iter().map(port).collect::<PyResult<Vec<_>>>()?;
     let acts_by_effort = told.law.is_some();
     let law = match &told.law {
-        Some(law) => law.get().law.clone(),
+        Some(law) => law.get().traced.clone(),
         None => empty_law()?,
     };
     let ports = law.ports().clone();
@@ -327,7 +346,10 @@ pub(crate) fn register(py: Python<'_>, told: Told) -> PyResult<()> {
         terms: Vec::new(),
     };
     let effort_std = ports.effort.iter().zip(&told.limits).map(|(_, limits)| half(limits)).collect();
+    let raised = Raised::default();
+    RAISED.lock().unwrap_or_else(PoisonError::into_inner).insert(told.name.clone(), raised.clone());
     let problem = PythonProblem(Arc::new(Known {
+        raised,
         name: told.name,
         about: told.about,
         law,

@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::environment::raised;
+use crate::environment::Raised;
 use crate::error::{self, Wrong};
 use crate::experiment::Experiment;
 use crate::training::MOST_THREADS;
@@ -37,6 +37,8 @@ struct Interface {
     /// Actions are from -1 to 1 where they have limits.
     scaled: bool,
     progress: f64,
+    /// Names of design parameters with their limits, SI.
+    parameters: Vec<(String, f64, f64)>,
 }
 
 impl Interface {
@@ -141,7 +143,7 @@ impl Lane {
 }
 
 /// Episodes in lock step.
-#[pyclass(module = "hwasp")]
+#[pyclass(module = "hwasp._hwasp")]
 pub(crate) struct Episodes {
     interface: Interface,
     lanes: Vec<Lane>,
@@ -153,6 +155,7 @@ pub(crate) struct Episodes {
     waiting: Vec<bool>,
     /// The actions of the step at hand, `[lanes, A]`.
     actions: Vec<f64>,
+    raised: Raised,
 }
 
 #[pymethods]
@@ -185,6 +188,7 @@ impl Episodes {
         }
         let made = py.detach(|| -> Result<Self, Wrong> {
             let assembly = experiment.assembly()?;
+            let raised = Raised::of(assembly.experiment().task.name());
             let (policy, params) = (&assembly.policy, assembly.init());
             let worlds = &assembly.worlds;
             let world = if deployment { &worlds.deployment } else { &worlds.training };
@@ -215,12 +219,11 @@ impl Episodes {
             });
             let lanes: Vec<Lane> = lanes.collect();
             let waiting = vec![false; lanes.len()];
-            Ok(Self { interface, lanes, threads, pool: None, open: true, waiting, actions: Vec::new() })
+            Ok(Self { interface, lanes, threads, pool: None, open: true, waiting, actions: Vec::new(), raised })
         });
-        if let Some(error) = raised::take() {
-            return Err(error);
-        }
-        Ok(made?)
+        let made = made?;
+        made.check_raised()?;
+        Ok(made)
     }
 
     /// Starts episodes: in all lanes, or in those of the mask. A lane without a seed goes on with the next episode of the seed
@@ -252,7 +255,7 @@ impl Episodes {
                 }
             }
         });
-        check_raised()?;
+        self.check_raised()?;
         self.observations(py)
     }
 
@@ -299,7 +302,7 @@ impl Episodes {
             }),
             None => lanes.iter_mut().enumerate().for_each(work),
         });
-        check_raised()?;
+        self.check_raised()?;
         let ended: Vec<usize> = (0..shape[0]).filter(|&i| self.lanes[i].end.is_some()).collect();
         self.waiting.fill(false);
         for &i in &ended {
@@ -323,7 +326,8 @@ impl Episodes {
 
     /// What is to be told of a lane whose episode has ended.
     fn ending<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyDict>> {
-        let lane = &mut self.lanes[lane];
+        let terms = self.interface.env.terms.clone();
+        let lane = self.lane(lane)?;
         let told = PyDict::new(py);
         if let Some(outcome) = lane.environment().outcome() {
             told.set_item("is_success", outcome.success)?;
@@ -335,12 +339,12 @@ impl Episodes {
         if lane.end == Some(End::Faulted) {
             told.set_item("fault", lane.environment().fault())?;
         }
-        if !self.interface.env.terms.is_empty() {
-            let terms = PyDict::new(py);
-            for (name, value) in self.interface.env.terms.iter().zip(lane.environment().terms()) {
-                terms.set_item(name, value)?;
+        if !terms.is_empty() {
+            let named = PyDict::new(py);
+            for (name, value) in terms.iter().zip(lane.environment().terms()) {
+                named.set_item(name, value)?;
             }
-            told.set_item("terms", terms)?;
+            told.set_item("terms", named)?;
         }
         Ok(told)
     }
@@ -354,20 +358,18 @@ impl Episodes {
                 lanes[i].end = None;
             }
         });
-        check_raised()?;
+        self.check_raised()?;
         self.write(observation)
     }
 
     /// The observation with which the last episode of a lane ended.
-    fn last<'py>(&self, py: Python<'py>, lane: usize) -> Bound<'py, PyArray1<f32>> {
-        PyArray1::from_slice(py, &self.lanes[lane].last)
+    fn last<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        Ok(PyArray1::from_slice(py, &self.lane(lane)?.last))
     }
 
     /// Builds the hardware of a lane to another design, SI, from its next start on: one value for each parameter.
     fn build(&mut self, lane: usize, design: Vec<f64>) -> PyResult<()> {
-        self.check_open()?;
-        let count = self.lanes.len();
-        let lane = self.lanes.get_mut(lane).ok_or_else(|| error::input(format!("there are {count} environments")))?;
+        let lane = self.lane(lane)?;
         let needed = lane.design.len();
         if design.len() != needed || design.iter().any(|value| !value.is_finite()) {
             return Err(error::input(format!("a design has {needed} finite numbers here, one for each parameter")));
@@ -377,8 +379,8 @@ impl Episodes {
     }
 
     /// The design of a lane, SI.
-    fn design<'py>(&self, py: Python<'py>, lane: usize) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.lanes[lane].design)
+    fn design<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, &self.lane(lane)?.design))
     }
 
     /// Names, limits and whether in SI: of an action.
@@ -394,10 +396,9 @@ impl Episodes {
 
     /// What the law reads of a lane, SI, by name.
     fn state<'py>(&mut self, py: Python<'py>, lane: usize) -> PyResult<Bound<'py, PyDict>> {
-        self.check_open()?;
-        let names = &self.interface.env.state;
+        let names = self.interface.env.state.clone();
         let mut state = vec![0.0; names.len()];
-        self.lanes[lane].environment().state(&mut state);
+        self.lane(lane)?.environment().state(&mut state);
         let named = PyDict::new(py);
         for (port, value) in names.iter().zip(state) {
             named.set_item(&port.name, value)?;
@@ -417,9 +418,7 @@ impl Episodes {
 
     /// Names of design parameters with their limits, SI.
     fn parameters(&self) -> Vec<(String, f64, f64)> {
-        let space = self.lanes[0].decoder.law().design();
-        let names = space.names().into_iter().enumerate();
-        names.map(|(i, name)| (name, space.bounds(i).0, space.bounds(i).1)).collect()
+        self.interface.parameters.clone()
     }
 
     /// Tells how much of a training is done, for worlds that begin easier; it counts from the next starts on.
@@ -460,6 +459,19 @@ impl Drop for Episodes {
 }
 
 impl Episodes {
+    fn check_raised(&self) -> PyResult<()> {
+        self.raised.take().map_or(Ok(()), Err)
+    }
+
+    /// A lane of an environment that is open.
+    fn lane(&mut self, lane: usize) -> PyResult<&mut Lane> {
+        self.check_open()?;
+        let count = self.lanes.len();
+        self.lanes
+            .get_mut(lane)
+            .ok_or_else(|| error::input(format!("there are {count} environments, and no number {lane}")))
+    }
+
     fn check_open(&self) -> PyResult<()> {
         if self.open { Ok(()) } else { Err(error::closed("this environment is closed")) }
     }
@@ -524,6 +536,11 @@ impl Interface {
             scaled,
             names,
             progress,
+            parameters: all
+                .into_iter()
+                .enumerate()
+                .map(|(i, name)| (name, space.bounds(i).0, space.bounds(i).1))
+                .collect(),
         }
     }
 }
@@ -550,8 +567,4 @@ fn take_in(action: &Bound<'_, PyAny>, shape: [usize; 2], names: &[String], taken
         return Err(error::input(format!("the action {name} of environment {lane} is no finite number")));
     }
     Ok(())
-}
-
-fn check_raised() -> PyResult<()> {
-    raised::take().map_or(Ok(()), Err)
 }

@@ -6,19 +6,21 @@ use std::sync::Arc;
 
 use hwasp_cli::{What, checked};
 use hwasp_experiment::{Layers, load, resolve};
-use hwasp_settings::Folder;
+use hwasp_settings::{Folder, Value};
 use hwasp_training::Assembly;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::catalogue::catalogue;
+use crate::environment::Raised;
 use crate::error::Wrong;
 use crate::log;
-use crate::training::{asked, train};
+use crate::training::{asked, attended, train};
 use crate::value::{kind, plain, text, toml_value};
 
 /// An experiment: what is trained, in which world, by what learner. It never changes: `set` gives another one.
-#[pyclass(frozen, module = "hwasp")]
+#[pyclass(frozen, module = "hwasp._hwasp")]
 #[derive(Clone)]
 pub(crate) struct Experiment {
     layers: Layers,
@@ -57,17 +59,11 @@ impl Experiment {
             let layers = Layers::from_text("experiment", &text).map_err(Wrong::input)?;
             return Ok(Self::of(layers.with_folder(Folder::Disk(".".into()))));
         }
-        let name = match what.cast::<PyString>() {
-            Ok(name) => name.to_str()?.to_owned(),
-            // Paths.
-            Err(_) => match what.call_method0("__fspath__") {
-                Ok(path) => text(&path, "a path")?,
-                Err(_) => {
-                    let message = format!("an experiment is a name, a path or a dict, not {}", kind(what));
-                    return Err(pyo3::exceptions::PyTypeError::new_err(message));
-                }
-            },
-        };
+        let name = if what.is_instance_of::<PyString>() { Ok(what.clone()) } else { what.call_method0("__fspath__") };
+        let name = name.map_err(|_| {
+            PyTypeError::new_err(format!("an experiment is a name, a path or a dict, not {}", kind(what)))
+        })?;
+        let name = text(&name, "a path")?;
         Ok(Self::of(py.detach(|| load(&name, &catalogue())).map_err(Wrong::input)?))
     }
 
@@ -84,10 +80,21 @@ impl Experiment {
     }
 
     fn check(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(py.detach(|| -> Result<String, Wrong> {
-            let assembly = self.assembly()?;
+        let assembly = py.detach(|| self.assembly())?;
+        let raised = Raised::of(assembly.experiment().task.name());
+        Ok(attended(py, None, &raised, move || -> Result<String, Wrong> {
             Ok(checked(assembly.experiment(), &assembly)?)
-        })?)
+        })??)
+    }
+
+    /// Where the file itself says that the design sits, which no other method changes; none where the method decides.
+    fn placement(&self) -> Option<String> {
+        let table = self.layers.overridden("");
+        let Value::Table(design) = &table.get("design")?.node.value else { return None };
+        match &design.get("placement")?.node.value {
+            Value::Text(text) => Some(text.clone()),
+            _ => None,
+        }
     }
 
     #[getter]

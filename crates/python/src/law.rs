@@ -23,7 +23,7 @@ fn lock(tracing: &Tracing) -> MutexGuard<'_, Formulas> {
 }
 
 /// A number of a law that is traced.
-#[pyclass(frozen, module = "hwasp")]
+#[pyclass(frozen, module = "hwasp._hwasp")]
 #[derive(Clone)]
 pub(crate) struct Number {
     tracing: Tracing,
@@ -67,21 +67,24 @@ fn compute<'py>(py: Python<'py>, formula: &str, operands: &[Bound<'py, PyAny>]) 
     let [part] = value.parts[..] else {
         return Err(error::input(format!("`{formula}` is a vector, and a law computes with numbers")));
     };
-    match (traced, formulas.known(part)) {
-        (None, Some(value)) => Ok(value.into_pyobject(py)?.into_any()),
-        _ => {
-            drop(formulas);
-            Ok(Bound::new(py, Number { tracing, part })?.into_any())
-        }
+    if let (None, Some(value)) = (traced, formulas.known(part)) {
+        return Ok(value.into_pyobject(py)?.into_any());
     }
+    drop(formulas);
+    Ok(Bound::new(py, Number { tracing, part })?.into_any())
 }
 
 type Operated<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// An operator; numpy, not this class, sees to arrays.
+/// What numpy, not this class, sees to: arrays.
+fn foreign(other: &Bound<'_, PyAny>) -> bool {
+    other.cast::<Number>().is_err() && other.extract::<f64>().is_err()
+}
+
+/// An operator.
 fn operated<'py>(number: &Bound<'py, Number>, other: &Bound<'py, PyAny>, formula: &str) -> Operated<'py> {
     let py = number.py();
-    if other.cast::<Number>().is_err() && other.extract::<f64>().is_err() {
+    if foreign(other) {
         return Ok(py.NotImplemented().into_bound(py));
     }
     compute(py, formula, &[number.clone().into_any(), other.clone()])
@@ -129,6 +132,9 @@ impl Number {
         if !modulo.is_none() {
             return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
         }
+        if foreign(other) {
+            return Ok(slf.py().NotImplemented().into_bound(slf.py()));
+        }
         power(slf.py(), slf.as_any(), other)
     }
 
@@ -139,6 +145,9 @@ impl Number {
     ) -> PyResult<Bound<'py, PyAny>> {
         if !modulo.is_none() {
             return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
+        }
+        if foreign(other) {
+            return Ok(slf.py().NotImplemented().into_bound(slf.py()));
         }
         power(slf.py(), other, slf.as_any())
     }
@@ -161,22 +170,31 @@ impl Number {
         compute(slf.py(), "abs(a0)", &[slf.clone().into_any()])
     }
 
-    fn __lt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        compute(slf.py(), "a0 < a1", &[slf.clone().into_any(), other.clone()])
+    fn __lt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 < a1")
     }
 
-    fn __le__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        compute(slf.py(), "a0 <= a1", &[slf.clone().into_any(), other.clone()])
+    fn __le__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 <= a1")
     }
 
-    fn __gt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        compute(slf.py(), "a0 > a1", &[slf.clone().into_any(), other.clone()])
+    fn __gt__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 > a1")
     }
 
-    fn __ge__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        compute(slf.py(), "a0 >= a1", &[slf.clone().into_any(), other.clone()])
+    fn __ge__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 >= a1")
     }
 
+    fn __eq__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 == a1")
+    }
+
+    fn __ne__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Operated<'py> {
+        operated(slf, other, "a0 != a1")
+    }
+
+    #[allow(clippy::unused_self, reason = "Python calls it on a number")]
     fn __bool__(&self) -> PyResult<bool> {
         Err(PyTypeError::new_err(
             "a law is traced once and does not branch on values: write hwasp.where(condition, yes, no), hwasp.minimum, \
@@ -184,6 +202,7 @@ impl Number {
         ))
     }
 
+    #[allow(clippy::unused_self, reason = "Python calls it on a number")]
     fn __float__(&self) -> PyResult<f64> {
         Err(PyTypeError::new_err(
             "a law is traced once, and its numbers have no values then: use hwasp.sin and the like, or numpy's, in place of \
@@ -235,16 +254,17 @@ impl Number {
 /// A power whose exponent is a plain number, or any of a positive base.
 fn power<'py>(py: Python<'py>, base: &Bound<'py, PyAny>, exponent: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     match exponent.extract::<f64>() {
+        Ok(exponent) if !exponent.is_finite() => Err(error::input(format!("{exponent} is no exponent of a law"))),
         Ok(exponent) => compute(py, &format!("a0^({exponent:?})"), std::slice::from_ref(base)),
         Err(_) => compute(py, "exp(a1 * log(a0))", &[base.clone(), exponent.clone()]),
     }
 }
 
 /// A law of the hardware: design space, names, and the program.
-#[pyclass(frozen, module = "hwasp")]
+#[pyclass(frozen, module = "hwasp._hwasp")]
 #[derive(Clone)]
 pub(crate) struct Law {
-    pub(crate) law: CoreLaw,
+    pub(crate) traced: CoreLaw,
     formulas: Formulas,
     outputs: Vec<Part>,
 }
@@ -303,9 +323,11 @@ pub(crate) fn trace<'py>(
     let named = effort.iter().cloned().zip(outputs.iter().copied()).collect();
     let program = formulas.program(&space.names(), &columns, named);
     let law = CoreLaw::from_program(program, space, Ports { command, state, effort }).map_err(Wrong::input)?;
-    Ok(Law { law, formulas, outputs })
+    Ok(Law { traced: law, formulas, outputs })
 }
 
+/// Definitions, and a formula for each effort.
+type Texts = (Vec<(String, String)>, Vec<String>);
 /// A batch of rows.
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
 /// Derivatives by design, commands and states.
@@ -314,7 +336,7 @@ type Cotangents<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bo
 impl Law {
     /// Inputs as a program reads them: column after column.
     fn columns(&self, design: &[f64], command: &Rows<'_>, state: &Rows<'_>) -> PyResult<(Vec<f64>, usize)> {
-        let (ports, needed) = (self.law.ports(), self.law.design().len());
+        let (ports, needed) = (self.traced.ports(), self.traced.design().len());
         if design.len() != needed {
             return Err(error::input(format!(
                 "the design has {} values, and the law {needed} parameters",
@@ -346,11 +368,14 @@ impl Law {
         state: Rows<'py>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (columns, rows) = self.columns(&design, &command, &state)?;
-        let (program, outputs) = (self.law.program(), self.outputs.len());
-        let mut effort = vec![0.0; outputs * rows];
-        let mut tape = program.tape::<f64>(rows.max(1));
-        program.bind(&design, &mut tape);
-        program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
+        let (program, outputs) = (self.traced.program(), self.outputs.len());
+        let effort = py.detach(|| {
+            let mut effort = vec![0.0; outputs * rows];
+            let mut tape = program.tape::<f64>(rows.max(1));
+            program.bind(&design, &mut tape);
+            program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
+            effort
+        });
         by_rows(py, &effort, outputs, rows)
     }
 
@@ -364,7 +389,7 @@ impl Law {
         cotangent: Rows<'py>,
     ) -> PyResult<Cotangents<'py>> {
         let (columns, rows) = self.columns(&design, &command, &state)?;
-        let (program, outputs) = (self.law.program(), self.outputs.len());
+        let (program, outputs) = (self.traced.program(), self.outputs.len());
         let cotangent = cotangent.as_array();
         if cotangent.shape() != [rows, outputs] {
             let shape = cotangent.shape();
@@ -373,15 +398,18 @@ impl Law {
             )));
         }
         let cotangent: Vec<f64> = cotangent.columns().into_iter().flat_map(|column| column.to_vec()).collect();
-        let mut tape = program.tape::<f64>(rows.max(1));
-        program.bind(&design, &mut tape);
-        let mut effort = vec![0.0; outputs * rows];
-        program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
-        let mut back = vec![0.0; columns.len()];
-        program.vjp(&columns, rows, rows, &cotangent, rows, &mut tape, &mut back, rows);
-        let mut by_design = vec![0.0; design.len()];
-        program.vjp_uniform(&mut tape, &mut by_design);
-        let (commands, states) = (self.law.ports().command.len(), self.law.ports().state.len());
+        let (back, by_design) = py.detach(|| {
+            let mut tape = program.tape::<f64>(rows.max(1));
+            program.bind(&design, &mut tape);
+            let mut effort = vec![0.0; outputs * rows];
+            program.forward(&columns, rows, rows, &mut tape, &mut effort, rows);
+            let mut back = vec![0.0; columns.len()];
+            program.vjp(&columns, rows, rows, &cotangent, rows, &mut tape, &mut back, rows);
+            let mut by_design = vec![0.0; design.len()];
+            program.vjp_uniform(&mut tape, &mut by_design);
+            (back, by_design)
+        });
+        let (commands, states) = (self.traced.ports().command.len(), self.traced.ports().state.len());
         let (by_command, by_state) = back.split_at(commands * rows);
         Ok((
             PyArray1::from_vec(py, by_design),
@@ -392,20 +420,23 @@ impl Law {
 
     /// Compares the derivatives with finite differences; returns the largest relative error.
     fn gradcheck(&self, design: Vec<f64>, command: Rows<'_>, state: Rows<'_>) -> PyResult<f64> {
-        let (columns, _) = self.columns(&design, &command, &state)?;
-        let checked = gradcheck(self.law.program(), &design, &columns, &GradCheckSettings::default());
+        let (columns, rows) = self.columns(&design, &command, &state)?;
+        if rows == 0 {
+            return Err(error::input("gradcheck takes a row at least"));
+        }
+        let checked = gradcheck(self.traced.program(), &design, &columns, &GradCheckSettings::default());
         Ok(checked.map_err(Wrong::input)?.max_relative_error)
     }
 
     /// The computational graph as SVG.
     fn svg(&self) -> String {
-        self.law.program().to_svg()
+        self.traced.program().to_svg()
     }
 
     /// As text over these names of design parameters, and of commands and states: definitions, and a formula for each effort.
-    fn text(&self, design: Vec<String>, columns: Vec<String>) -> PyResult<(Vec<(String, String)>, Vec<String>)> {
-        let ports = self.law.ports();
-        let needed = [self.law.design().len(), ports.command.len() + ports.state.len()];
+    fn text(&self, design: Vec<String>, columns: Vec<String>) -> PyResult<Texts> {
+        let ports = self.traced.ports();
+        let needed = [self.traced.design().len(), ports.command.len() + ports.state.len()];
         if [design.len(), columns.len()] != needed {
             return Err(PyValueError::new_err(format!(
                 "there are {} and {} names, not {needed:?}",

@@ -1,6 +1,8 @@
 //! The native half of the Python package `hwasp`. The other half, in `python/hwasp`, is what people import: it has the docs and
 //! whatever is more readable in Python. Here is what has to be fast, or is the program's own.
 
+#![allow(clippy::needless_pass_by_value, reason = "Python's values are handed over")]
+
 mod catalogue;
 mod command;
 mod compare;

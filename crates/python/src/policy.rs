@@ -11,7 +11,7 @@ use safetensors::SafeTensors;
 use crate::error::{self, Wrong};
 
 /// The deterministic controller on the design as built.
-#[pyclass(frozen, module = "hwasp")]
+#[pyclass(frozen, module = "hwasp._hwasp")]
 pub(crate) struct Policy {
     deployed: Deployed,
     /// The parameters of the whole policy by name, as `policy.safetensors` of a run has them.

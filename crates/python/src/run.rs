@@ -14,15 +14,16 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::catalogue::catalogue;
+use crate::environment::Raised;
 use crate::error::Wrong;
 use crate::experiment::Experiment;
 use crate::log;
 use crate::policy::Policy;
-use crate::training::{MOST_THREADS, asked, train};
-use crate::value::plain;
+use crate::training::{MOST_THREADS, asked, attended, train};
+use crate::value::{plain, text, toml_value};
 
 /// A run folder: its experiment, design, policy, curves and figures.
-#[pyclass(frozen, module = "hwasp")]
+#[pyclass(frozen, module = "hwasp._hwasp")]
 pub(crate) struct Run {
     path: PathBuf,
     saved: Arc<SavedRun>,
@@ -134,14 +135,20 @@ impl Run {
         py: Python<'py>,
         episodes: Option<u64>,
         seed: Option<u64>,
-        settings: Vec<String>,
+        settings: Option<&Bound<'py, PyDict>>,
         native: bool,
         threads: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let evaluation = py.detach(|| -> Result<_, Wrong> {
+        let assigned = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            Ok(format!("{}={}", text(&key, "the name of a setting")?, toml_value(&value)?))
+        };
+        let settings = settings.into_iter().flatten().map(assigned).collect::<PyResult<Vec<String>>>()?;
+        let raised = Raised::of(self.saved.assembly().experiment().task.name());
+        let path = self.path.clone();
+        let evaluation = attended(py, None, &raised, move || -> Result<_, Wrong> {
             let executor = executor(threads)?;
             let catalogue = catalogue();
-            let saved = SavedRun::open_with(&self.path, &settings, &catalogue).map_err(Wrong::input)?;
+            let saved = SavedRun::open_with(&path, &settings, &catalogue).map_err(Wrong::input)?;
             let params = saved.params().map_err(Wrong::input)?;
             let assembly: &Assembly = saved.assembly();
             let train = &assembly.experiment().train;
@@ -157,10 +164,7 @@ impl Run {
             };
             evaluated.map_err(Wrong::failed)
         });
-        if let Some(error) = crate::environment::raised::take() {
-            return Err(error);
-        }
-        plain(py, &evaluation?)
+        plain(py, &evaluation??)
     }
 
     #[pyo3(signature = (out, kinds, samples))]
@@ -171,8 +175,9 @@ impl Run {
         kinds: Vec<String>,
         samples: Option<u64>,
     ) -> PyResult<Vec<PathBuf>> {
-        let files = py.detach(|| -> Result<_, Wrong> {
-            let source = Source::open(&self.path, &catalogue()).map_err(Wrong::input)?;
+        let (path, raised) = (self.path.clone(), Raised::of(self.saved.assembly().experiment().task.name()));
+        let files = attended(py, None, &raised, move || -> Result<_, Wrong> {
+            let source = Source::open(&path, &catalogue()).map_err(Wrong::input)?;
             let named = |name: &String| {
                 let known = Kind::ALL.into_iter().find(|kind| kind.name() == name);
                 known.ok_or_else(|| {
@@ -185,16 +190,18 @@ impl Run {
             } else {
                 kinds.iter().map(named).collect::<Result<Vec<_>, _>>()?
             };
-            let out = out.unwrap_or_else(|| self.path.join("export"));
+            let out = out.unwrap_or_else(|| path.join("export"));
             let files = export(&source, &kinds, samples, &out).map_err(Wrong::input)?;
             Ok(files.into_iter().map(|file| out.join(file.name)).collect())
-        })?;
+        })??;
         Ok(files)
     }
 
     /// The report as one HTML page.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(py.detach(|| hwasp_report::report(&self.path, &catalogue())).map_err(Wrong::input)?)
+        let (path, raised) = (self.path.clone(), Raised::of(self.saved.assembly().experiment().task.name()));
+        let page = attended(py, None, &raised, move || hwasp_report::report(&path, &catalogue()).map_err(Wrong::input));
+        Ok(page??)
     }
 
     #[pyo3(signature = (*, threads, checkpoint_every, tensorboard, watch))]
@@ -213,10 +220,13 @@ impl Run {
 /// The most episodes of an evaluation.
 const MOST_EPISODES: u64 = 1_000_000_000;
 
+/// More threads than anyone asks for.
+const EXCESSIVE: usize = MOST_THREADS + 1;
+
 /// So many threads.
 pub(crate) fn executor(threads: usize) -> Result<Box<dyn Executor>, Wrong> {
     match threads {
-        0 | MOST_THREADS.. => Err(Wrong::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}"))),
+        0 | EXCESSIVE.. => Err(Wrong::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}"))),
         1 => Ok(Box::new(Serial)),
         threads => Ok(Box::new(Threads::new(threads).map_err(Wrong::failed)?)),
     }

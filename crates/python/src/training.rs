@@ -13,11 +13,12 @@ use hwasp_cli::{Session, Training, What};
 use hwasp_runs::metrics::{LEARNER, TERM};
 use hwasp_training::{Event, Observer, ObserverError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict};
+use pyo3::types::PyDict;
 
 use crate::catalogue::catalogue;
-use crate::environment::raised;
+use crate::environment::Raised;
 use crate::error::{self, Wrong};
+use crate::value::kind;
 use crate::{command, log};
 
 /// The most threads that one may ask for.
@@ -93,6 +94,7 @@ pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>
     log::begin();
     let session = py.detach(|| Session::begin(training, &catalogue()).map_err(Wrong::from))?;
     let path = session.path().to_owned();
+    let raised = Raised::of(session.assembly().experiment().task.name());
     let stop = Arc::new(AtomicBool::new(false));
     let (sender, news) = sync_channel(WAITING);
     let teller = Teller { news: watch.is_some().then(|| sender.clone()), path: path.clone() };
@@ -103,14 +105,14 @@ pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>
         drop((teller, alive));
         ended
     })?;
-    let listened = listen(py, news, watch.as_ref(), &stop);
+    let listened = listen(py, news, watch.as_ref(), Some(&stop), &raised);
     if let Err(Unheard { error, at_once: true }) = listened {
         // It finishes its iteration and its checkpoint by itself.
         return Err(error);
     }
     let ended = py.detach(|| work.join());
     // What an environment raised is the cause of whatever followed.
-    if let Some(error) = raised::take() {
+    if let Some(error) = raised.take() {
         return Err(error);
     }
     let ended = ended.map_err(broken)?;
@@ -140,7 +142,8 @@ fn listen(
     py: Python<'_>,
     mut news: Receiver<News>,
     watch: Option<&Py<PyAny>>,
-    stop: &AtomicBool,
+    stop: Option<&AtomicBool>,
+    raised: &Raised,
 ) -> Result<Heard, Unheard> {
     let (mut names, mut first, mut enough) = (Vec::new(), None, false);
     loop {
@@ -150,7 +153,7 @@ fn listen(
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => Ok(()),
             // Nobody is told any more of what is about to stop.
-            Ok(_) if stop.load(Ordering::Relaxed) => Ok(()),
+            Ok(_) if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) => Ok(()),
             Ok(News::Began { env_steps, path, names: columns }) => {
                 names = columns;
                 let call = || -> PyResult<()> {
@@ -165,12 +168,13 @@ fn listen(
                 enough |= stops;
             }),
         };
-        if enough || raised::waits() {
-            stop.store(true, Ordering::Relaxed);
+        let end = || stop.map(|stop| stop.store(true, Ordering::Relaxed));
+        if enough || raised.waits() {
+            end();
         }
         if let Err(error) = told.and_then(|()| py.check_signals()) {
-            stop.store(true, Ordering::Relaxed);
-            if first.is_some() {
+            // Nobody waits for work that cannot be stopped.
+            if end().is_none() || first.is_some() {
                 return Err(Unheard { error, at_once: true });
             }
             first = Some(error);
@@ -183,10 +187,12 @@ fn listen(
     }
 }
 
-/// Does work on a thread of its own while signals are looked for: a signal sets `stop`, and is raised when the work has ended.
+/// Does work on a thread of its own while signals are looked for: a signal sets `stop`, and is raised when the work has ended. Work
+/// that cannot be stopped is left to end by itself.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
-    stop: &AtomicBool,
+    stop: Option<&AtomicBool>,
+    raised: &Raised,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let (alive, news) = sync_channel(1);
@@ -194,7 +200,7 @@ pub(crate) fn attended<T: Send + 'static>(
         let _alive: SyncSender<News> = alive;
         work()
     })?;
-    match listen(py, news, None, stop) {
+    match listen(py, news, None, stop, raised) {
         Err(Unheard { error, at_once: true }) => return Err(error),
         Err(Unheard { error, .. }) => {
             let _ = py.detach(|| work.join());
@@ -202,7 +208,8 @@ pub(crate) fn attended<T: Send + 'static>(
         }
         Ok(_) => {}
     }
-    Ok(py.detach(|| work.join()).map_err(broken)?)
+    let done = py.detach(|| work.join()).map_err(broken)?;
+    raised.take().map_or(Ok(done), Err)
 }
 
 /// A thread that panicked: a fault of the program.
@@ -221,5 +228,6 @@ fn tell(py: Python<'_>, watch: &Py<PyAny>, names: &[String], values: &[f64]) -> 
         }
     }
     let answer = watch.bind(py).call1((row,))?;
-    Ok(answer.cast::<PyBool>().is_ok_and(|answer| !answer.is_true()))
+    // Python's own, or numpy's.
+    Ok(matches!(&*kind(&answer), "bool" | "bool_") && !answer.is_truthy()?)
 }

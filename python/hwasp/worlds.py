@@ -43,8 +43,11 @@ def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | Non
     - `time_step`: s; the environment's `dt` where none is given, or that of its `render_fps`.
     - `horizon`: steps after which an episode is cut off; the environment's own where none is given.
 
-    An exception of the environment ends the training, with a checkpoint, and is raised. A `VectorEnv` is refused: this program's
-    learners count and start episodes one by one.
+    `make` may make a `gymnasium.vector.VectorEnv`, too, with `autoreset_mode=AutoresetMode.DISABLED` and a `reset_mask`, as
+    Gymnasium's have them: its environments are stepped together. An iteration should have a multiple of as many episodes; an
+    environment that has nothing to do is stepped all the same, and that is not counted. `build` is for single ones.
+
+    An exception of the environment ends the training, with a checkpoint, and is raised.
     """
     maker = _maker(make)
     env = maker()
@@ -52,6 +55,8 @@ def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | Non
         told = _told(env, law, state, time_step, horizon)
     finally:
         env.close()
+    if build is not None and told["lanes"] is not None:
+        raise InputError("build is for single environments: those of a vector environment are not built one by one")
     if not isinstance(shaped_by, (list, tuple)):
         raise TypeError(f"shaped_by names groups of parameters, ['gain'] for one, and is {shaped_by!r}")
     _hwasp.register({
@@ -78,9 +83,18 @@ def _maker(make: str | Callable[[], Any]) -> Callable[[], Any]:
 def _told(env: Any, law: Law | None, state: State | None, time_step: float | None, horizon: int | None) -> dict[str, Any]:
     import numpy as np
 
-    if hasattr(env, "num_envs"):
-        raise InputError("this makes a vector environment; make a single one, this program starts its episodes one by one")
-    seen, acted = env.observation_space, env.action_space
+    lanes = getattr(env, "num_envs", None)
+    if lanes is None:
+        seen, acted = env.observation_space, env.action_space
+    else:
+        from gymnasium.vector import AutoresetMode
+
+        seen, acted = env.single_observation_space, env.single_action_space
+        if env.metadata.get("autoreset_mode") is not AutoresetMode.DISABLED:
+            raise InputError(
+                "this program starts the episodes of a vector environment itself: make it with "
+                "autoreset_mode=gymnasium.vector.AutoresetMode.DISABLED"
+            )
     for what, space in [("observations", seen), ("actions", acted)]:
         if type(space).__name__ != "Box":
             hint = "gymnasium.wrappers.FlattenObservation makes one of many" if what == "observations" else "only numbers are commands"
@@ -121,7 +135,7 @@ def _told(env: Any, law: Law | None, state: State | None, time_step: float | Non
     return {
         "observation": [(f"obs[{i}]", "") for i in range(count)], "state": state if callable(state) else None, "places": places,
         "command": command, "shape": list(acted.shape), "single": acted.dtype == np.float32,
-        "limits": list(zip(low.tolist(), high.tolist())), "horizon": int(horizon), "time_step": float(time_step),
+        "limits": list(zip(low.tolist(), high.tolist())), "lanes": lanes, "horizon": int(horizon), "time_step": float(time_step),
     }  # fmt: skip
 
 

@@ -51,6 +51,11 @@ def spring(**limits):
     return law
 
 
+def vector(count, kind="Sync"):
+    made = getattr(gymnasium.vector, f"{kind}VectorEnv")
+    return made([Point] * count, autoreset_mode=gymnasium.vector.AutoresetMode.DISABLED)
+
+
 @pytest.fixture(autouse=True)
 def nothing_stays_registered():
     before = set(hwasp.problems())
@@ -94,6 +99,30 @@ def test_a_state_may_be_computed_and_a_world_may_be_built():
     run = experiment("built", method="episode").train("run", progress=False)
     assert len(set(built)) > 20 and all(0.5 <= gain <= 2.0 for gain in built)
     assert run.finished
+
+
+@pytest.mark.parametrize("train", [{"episodes_per_iteration": 8}, {"episodes_per_iteration": 5, "steps_per_iteration": 300}])
+@pytest.mark.parametrize(("count", "kind"), [(4, "Sync"), (3, "Sync"), (4, "Async")])
+def test_a_vector_environment_gives_the_bits_of_single_ones(count, kind, train):
+    asked = {"train": {"env_steps": 1500, "episode_steps": 40, "evaluation_episodes": 3, **train}, "method": "hwasp"}
+    runs = []
+    for name, make in [("single", Point), ("vector", lambda: vector(count, kind))]:
+        hwasp.register_problem("point", make, law=spring(), horizon=40)
+        experiment("point").check()
+        runs.append(experiment("point", **asked).train(name, threads=2 if kind == "Sync" else 1, progress=False))
+    assert np.array_equal(runs[0].params, runs[1].params) and runs[0].summary["evaluation"] == runs[1].summary["evaluation"]
+
+
+def test_an_exception_in_a_vector_environment_is_raised():
+    def fails():
+        raise ZeroDivisionError("physics")
+
+    make = lambda: gymnasium.vector.SyncVectorEnv(
+        [Point, lambda: Point(fails)], autoreset_mode=gymnasium.vector.AutoresetMode.DISABLED
+    )
+    hwasp.register_problem("failing", make, horizon=40)
+    with pytest.raises(ZeroDivisionError, match="physics"):
+        experiment("failing").train("run", progress=False)
 
 
 def test_it_is_an_environment_again():
@@ -146,7 +175,8 @@ def test_an_environment_that_cannot_be_made_is_told():
         (Point, {"horizon": 0}, "from 1 to"),
         (Point, {"horizon": 40, "time_step": 0.0}, "more than 0"),
         (Point, {"horizon": 40, "time_step": float("nan")}, "more than 0"),
-        (lambda: gymnasium.make_vec("CartPole-v1", 2), {}, "vector"),
+        (lambda: gymnasium.make_vec("Pendulum-v1", 2), {}, "AutoresetMode.DISABLED"),
+        (lambda: vector(2), {"horizon": 40, "build": lambda env, design: None}, "single"),
         ("CartPole-v1", {}, "Discrete"),
         (Point, {"horizon": 40, "law": spring(), "state": [7]}, "places"),
         (Point, {"horizon": 40, "law": spring(), "state": [0, 1]}, "reads 1"),

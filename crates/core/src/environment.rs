@@ -216,6 +216,10 @@ pub trait Environment: Send {
     /// Writes what the episode is about and no sensor tells, in SI.
     fn context(&self, _out: &mut [f64]) {}
 
+    /// Told what the next step will be, before any environment that goes in lock step with it is stepped: for those that are
+    /// computed together. Nobody has to tell it.
+    fn announce(&mut self, _effort: &[f64], _command: &[f64]) {}
+
     /// One control step. Commands are limited to their ports' ranges by the environment itself.
     fn step(&mut self, effort: &[f64], command: &[f64]) -> Step;
 
@@ -353,6 +357,11 @@ impl<T: Task> Environment for Robot<T> {
 pub trait MakeEnvironment: Send + Sync {
     /// A fresh one; `horizon` replaces the task's own.
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment>;
+
+    /// So many that will go in lock step, on one thread at a time.
+    fn make_many(&self, count: usize, horizon: Option<usize>) -> Vec<Box<dyn Environment>> {
+        (0..count).map(|_| self.make(horizon)).collect()
+    }
 }
 
 impl<F: Fn(Option<usize>) -> Box<dyn Environment> + Send + Sync> MakeEnvironment for F {

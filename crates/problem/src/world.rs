@@ -60,7 +60,7 @@ impl World {
     pub fn with_horizon(mut self, horizon: usize) -> Self {
         let make = Arc::clone(&self.make);
         self.env.horizon = horizon;
-        self.make = Arc::new(move |shorter: Option<usize>| make.make(Some(shorter.unwrap_or(horizon))));
+        self.make = Arc::new(WithHorizon { make, horizon });
         self
     }
 
@@ -77,6 +77,22 @@ impl World {
 impl fmt::Debug for World {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("World").field("law", &self.law).field("env", &self.env).finish_non_exhaustive()
+    }
+}
+
+/// Environments with episodes of so many steps, unless shorter ones are asked for.
+struct WithHorizon {
+    make: Arc<dyn MakeEnvironment>,
+    horizon: usize,
+}
+
+impl MakeEnvironment for WithHorizon {
+    fn make(&self, horizon: Option<usize>) -> Box<dyn Environment> {
+        self.make.make(Some(horizon.unwrap_or(self.horizon)))
+    }
+
+    fn make_many(&self, count: usize, horizon: Option<usize>) -> Vec<Box<dyn Environment>> {
+        self.make.make_many(count, Some(horizon.unwrap_or(self.horizon)))
     }
 }
 
@@ -98,6 +114,13 @@ impl MakeEnvironment for Later {
     fn make(&self, horizon: Option<usize>) -> Box<dyn Environment> {
         match self.made() {
             Ok(make) => make.make(horizon),
+            Err(error) => panic!("World::ready is asked before the first environment is made: {error}"),
+        }
+    }
+
+    fn make_many(&self, count: usize, horizon: Option<usize>) -> Vec<Box<dyn Environment>> {
+        match self.made() {
+            Ok(make) => make.make_many(count, horizon),
             Err(error) => panic!("World::ready is asked before the first environment is made: {error}"),
         }
     }

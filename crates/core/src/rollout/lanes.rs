@@ -183,13 +183,18 @@ impl<'p> Lanes<'p> {
             }
             actor.act(&obs, &columns, count, self.noisy.then_some(&mut self.noise[..]));
             for e in 0..lanes {
+                if self.stands[e].end.is_none() {
+                    let (decoder, state) = (&mut self.decoders[e], &states[e * state_dim..][..state_dim]);
+                    decoder.decode(actor.action(e), actor.unsampled(e), state);
+                    self.environments[e].announce(&decoder.effort, &decoder.command);
+                }
+            }
+            for e in 0..lanes {
                 if self.stands[e].end.is_some() {
                     continue;
                 }
                 let state = &states[e * state_dim..][..state_dim];
-                let decoder = &mut self.decoders[e];
-                let action = actor.action(e);
-                decoder.decode(action, actor.unsampled(e), state);
+                let (decoder, action) = (&self.decoders[e], actor.action(e));
                 let result = self.environments[e].step(&decoder.effort, &decoder.command);
                 let row = e * self.stride + step;
                 let log_prob = actor.log_prob(e);

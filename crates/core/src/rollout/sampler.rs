@@ -19,7 +19,8 @@ pub struct Sampler {
     policy: Arc<HardwarePolicy>,
     make: Arc<dyn MakeEnvironment>,
     horizon: Option<usize>,
-    idle: Mutex<Vec<Box<dyn Environment>>>,
+    /// Sets of environments that go in lock step, each for one job at a time.
+    idle: Mutex<Vec<Vec<Box<dyn Environment>>>>,
 }
 
 impl std::fmt::Debug for Sampler {
@@ -142,14 +143,17 @@ impl Sampler {
         })
     }
 
-    fn idle(&self) -> MutexGuard<'_, Vec<Box<dyn Environment>>> {
+    fn idle(&self) -> MutexGuard<'_, Vec<Vec<Box<dyn Environment>>>> {
         self.idle.lock().expect("nothing panics while the list is locked")
     }
 
-    /// Takes an idle environment or makes one.
-    fn environment(&self) -> Box<dyn Environment> {
-        let idle = self.idle().pop();
-        idle.unwrap_or_else(|| self.make.make(self.horizon))
+    /// Takes idle environments, and makes those that are missing.
+    fn environments(&self, count: usize) -> Vec<Box<dyn Environment>> {
+        let mut set = self.idle().pop().unwrap_or_default();
+        if set.len() < count {
+            set.extend(self.make.make_many(count - set.len(), self.horizon));
+        }
+        set
     }
 
     /// One job: its episodes in lock step, and what `result` makes of them.
@@ -161,11 +165,15 @@ impl Sampler {
         result: impl Fn(&mut Lanes<'_>, &Episodes) -> T,
     ) -> Result<T, RolloutError> {
         let count = (episodes.indices.end - episodes.indices.start) as usize;
-        let environments = (0..count).map(|_| self.environment()).collect();
+        let mut environments = self.environments(count);
+        // The last job may have fewer lanes than others.
+        let rest = environments.split_off(count);
         let mut lanes = Lanes::new(&self.policy, params, environments, episodes, keep);
         let mut actor = Actor::new(&self.policy, params, episodes.progress, count);
         let result = lanes.run(&mut actor, episodes).map(|()| result(&mut lanes, episodes));
-        self.idle().append(&mut lanes.environments);
+        let mut set = std::mem::take(&mut lanes.environments);
+        set.extend(rest);
+        self.idle().push(set);
         result
     }
 }

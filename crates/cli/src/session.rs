@@ -118,12 +118,16 @@ impl Session {
         report::beginning(self.assembly.experiment(), self.path(), self.resumed, self.found.checkpoint.as_ref())
     }
 
+    /// Tells of checkpoints that are damaged, where it goes on from an older one.
+    pub fn warn(&self) {
+        self.found.warn();
+    }
+
     /// Trains to the end, and finishes the folder. The run folder is the first of the observers.
     ///
     /// # Errors
     /// Where it was stopped or failed; the folder has what it takes to go on.
     pub fn run(mut self, watching: &mut dyn Observer, stop: &AtomicBool) -> Result<(Trained, Summary), Failure> {
-        self.found.warn();
         let mut observers: Vec<&mut dyn Observer> = Vec::new();
         observers.extend(self.board.as_mut().map(|board| board as &mut dyn Observer));
         observers.push(watching);

@@ -93,6 +93,7 @@ pub(crate) fn asked(
 pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>) -> PyResult<PathBuf> {
     log::begin();
     let session = py.detach(|| Session::begin(training, &catalogue()).map_err(Wrong::from))?;
+    session.warn();
     let path = session.path().to_owned();
     let raised = Raised::of(session.assembly().experiment().task.name());
     let stop = Arc::new(AtomicBool::new(false));

@@ -14,6 +14,7 @@ pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure
     let session = Session::begin(asked(args, catalogue)?, catalogue)?;
     let path = session.path().to_owned();
     log::to_file(&path.join("train.log"));
+    session.warn();
     let stop = stop_on_signal()?;
     output::remark(&session.opening());
     let mut progress = Progress::new(session.assembly());

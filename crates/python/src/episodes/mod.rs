@@ -1,10 +1,9 @@
 //! Many episodes of one world, stepped in lock step by actions from outside: what is behind the Gymnasium environments.
 
-use std::sync::{Mutex, PoisonError};
+mod lane;
 
-use hwasp_core::{ActionDecoder, End, EnvSpec, Environment, HardwarePolicy, Normalizer, Policy as _, Purpose, stream};
+use hwasp_core::End;
 use hwasp_experiment::MOST_STEPS;
-use hwasp_training::World;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,132 +14,12 @@ use crate::environment::Raised;
 use crate::error::{self, Wrong};
 use crate::experiment::Experiment;
 use crate::training::MOST_THREADS;
+use lane::{Interface, Lane};
 
 /// The most environments of one vector.
 const MOST_LANES: usize = 65_536;
 /// Lanes that one thread steps before another one may take the next.
 const CHUNK: usize = 4;
-
-/// What is the same in all lanes.
-struct Interface {
-    env: EnvSpec,
-    names: Vec<String>,
-    /// Of each component of an action, SI; none of an effort.
-    limits: Vec<Option<(f64, f64)>>,
-    /// How many of them, the first ones, are drawn once an episode.
-    drawn: usize,
-    /// Which design parameter each of them is.
-    draws: Vec<usize>,
-    /// The world's model is made from what is drawn, so that it is put into its start again when the draw is known.
-    restarts: bool,
-    normalizer: Option<Normalizer>,
-    /// Actions are from -1 to 1 where they have limits.
-    scaled: bool,
-    progress: f64,
-    /// Names of design parameters with their limits, SI.
-    parameters: Vec<(String, f64, f64)>,
-}
-
-impl Interface {
-    /// An action's component in SI.
-    fn si(&self, i: usize, value: f64) -> f64 {
-        match self.limits[i] {
-            Some((lo, hi)) if self.scaled => 0.5 * (lo + hi) + 0.5 * (hi - lo) * value.clamp(-1.0, 1.0),
-            _ => value,
-        }
-    }
-}
-
-/// One environment and the episode in it.
-struct Lane {
-    /// Never locked: whoever has a lane to itself needs no lock.
-    environment: Mutex<Box<dyn Environment>>,
-    decoder: ActionDecoder,
-    /// What the hardware was built to, SI.
-    built: Vec<f64>,
-    /// The whole design of the episode, SI: as built, but for what is drawn.
-    design: Vec<f64>,
-    seed: u64,
-    /// The index of the episode at hand under this seed.
-    episode: u64,
-    /// Whether an episode is under way.
-    begun: bool,
-    steps: u64,
-    state: Vec<f64>,
-    seen: Vec<f64>,
-    action: Vec<f64>,
-    unsampled: Vec<f64>,
-    obs: Vec<f32>,
-    /// The observation with which the last episode ended, where the next one has begun since.
-    last: Vec<f32>,
-    reward: f64,
-    end: Option<End>,
-}
-
-impl Lane {
-    fn environment(&mut self) -> &mut dyn Environment {
-        &mut **self.environment.get_mut().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn start(&mut self, interface: &Interface) {
-        self.begun = true;
-        self.steps = 0;
-        self.design.clone_from(&self.built);
-        self.decoder.build(&self.design);
-        self.put(interface);
-        self.see(interface);
-    }
-
-    /// Puts the world into the start of the episode at hand: the one of this index in a training's first iteration.
-    fn put(&mut self, interface: &Interface) {
-        let rng = &mut stream(self.seed, Purpose::TrainingReset, 0, self.episode);
-        let environment = self.environment.get_mut().unwrap_or_else(PoisonError::into_inner);
-        environment.set_progress(interface.progress);
-        environment.set_design(&self.design);
-        environment.reset(rng);
-    }
-
-    fn see(&mut self, interface: &Interface) {
-        self.environment.get_mut().unwrap_or_else(PoisonError::into_inner).observe(&mut self.seen);
-        match &interface.normalizer {
-            Some(normalizer) => normalizer.apply(&self.seen, &mut self.obs),
-            None => self.obs.iter_mut().zip(&self.seen).for_each(|(out, &x)| *out = x as f32),
-        }
-    }
-
-    fn step(&mut self, interface: &Interface, action: impl Fn(usize) -> f64) {
-        for i in 0..self.action.len() {
-            if i < interface.drawn && self.steps > 0 {
-                continue;
-            }
-            self.action[i] = interface.si(i, action(i));
-        }
-        if self.steps == 0 && interface.drawn > 0 {
-            for (&i, &value) in interface.draws.iter().zip(&self.action) {
-                let (lo, hi) = self.decoder.law().design().bounds(i);
-                self.design[i] = value.clamp(lo, hi);
-            }
-            self.decoder.build(&self.design);
-            if interface.restarts {
-                self.put(interface);
-            }
-        }
-        let environment = self.environment.get_mut().unwrap_or_else(PoisonError::into_inner);
-        environment.state(&mut self.state);
-        self.decoder.decode(&self.action, &self.unsampled, &self.state);
-        let step = environment.step(self.decoder.effort(), self.decoder.command());
-        self.steps += 1;
-        (self.reward, self.end) = (step.reward, step.end);
-        self.see(interface);
-        self.begun = step.end.is_none();
-    }
-
-    /// Begins the next episode under the same seed.
-    fn next(&mut self, interface: &Interface) {
-        self.episode += 1;
-        self.start(interface);
-    }
-}
 
 /// Episodes in lock step.
 #[pyclass(module = "hwasp._hwasp")]
@@ -195,28 +74,7 @@ impl Episodes {
             let mut interface = Interface::new(policy, &params, world, scale_actions, scale_observations, progress);
             interface.env.horizon = horizon.unwrap_or(interface.env.horizon);
             let design = policy.design(&params);
-            let lanes = (0..lanes).map(|_| {
-                let mut decoder = policy.action_decoder();
-                decoder.build(&design);
-                Lane {
-                    environment: Mutex::new(world.make.make(horizon)),
-                    built: design.clone(),
-                    design: design.clone(),
-                    seed: 0,
-                    episode: 0,
-                    begun: false,
-                    steps: 0,
-                    state: vec![0.0; interface.env.state.len()],
-                    seen: vec![0.0; interface.env.observation.len()],
-                    action: vec![0.0; interface.names.len()],
-                    unsampled: vec![0.0; decoder.unsampled()],
-                    obs: vec![0.0; interface.env.observation.len()],
-                    last: vec![0.0; interface.env.observation.len()],
-                    reward: 0.0,
-                    end: None,
-                    decoder,
-                }
-            });
+            let lanes = (0..lanes).map(|_| Lane::new(&interface, policy, &design, world.make.make(horizon)));
             let lanes: Vec<Lane> = lanes.collect();
             let waiting = vec![false; lanes.len()];
             Ok(Self { interface, lanes, threads, pool: None, open: true, waiting, actions: Vec::new(), raised })
@@ -506,42 +364,6 @@ impl Episodes {
         let rows = observation.as_slice_mut()?.chunks_exact_mut(width);
         rows.zip(&self.lanes).for_each(|(row, lane)| row.copy_from_slice(&lane.obs));
         Ok(())
-    }
-}
-
-impl Interface {
-    fn new(
-        policy: &HardwarePolicy,
-        params: &[f32],
-        world: &World,
-        scaled: bool,
-        scale_observations: bool,
-        progress: f64,
-    ) -> Self {
-        let names = policy.action_names().to_vec();
-        let limits = policy.action_limits();
-        let limits = limits.into_iter().map(|limits| limits.map(|(lo, hi)| (f64::from(lo), f64::from(hi)))).collect();
-        let (drawn, space) = (policy.drawn_actions(), policy.space());
-        let all = space.names();
-        let place = |name: &String| all.iter().position(|known| known == name);
-        let draws: Vec<usize> = names[..drawn].iter().filter_map(place).collect();
-        let shaped = |&i: &usize| world.env.shaped_by.contains(&space.group_of(i).name);
-        Self {
-            env: world.env.clone(),
-            limits,
-            drawn,
-            restarts: draws.iter().any(shaped),
-            draws,
-            normalizer: scale_observations.then(|| policy.normalizer(params)),
-            scaled,
-            names,
-            progress,
-            parameters: all
-                .into_iter()
-                .enumerate()
-                .map(|(i, name)| (name, space.bounds(i).0, space.bounds(i).1))
-                .collect(),
-        }
     }
 }
 

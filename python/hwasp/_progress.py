@@ -18,6 +18,8 @@ LINES = 20
 
 def watcher(progress: bool, callback: Callable[[dict[str, float]], object] | None) -> _Watcher:
     """Calls `callback` with each row, and shows how far the training is."""
+    if callback is not None and not callable(callback):
+        raise TypeError(f"callback is a function that is called with each row, not {callback!r}")
     shows: _Terminal | _Lines | _Notebook | None = None
     if progress:
         display = _notebook()

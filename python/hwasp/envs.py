@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 
 from . import _hwasp
 from .errors import InputError
-from .runs import Experiment, cores
+from .runs import Experiment
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +34,7 @@ class _Stepped:
 
     np_random: np.random.Generator
 
-    def _open(self, experiment: Loadable, num_envs: int, threads: int, method: str | None, settings: dict[str, Any] | None,
+    def _open(self, experiment: Loadable, num_envs: int, threads: int | None, method: str | None, settings: dict[str, Any] | None,
               world: World, scale_actions: bool, scale_observations: bool, progress: float,
               horizon: int | None) -> tuple[Box, Box]:  # fmt: skip
         if world not in ("training", "deployment"):
@@ -80,9 +80,17 @@ class _Stepped:
                 own = [known for known in names if known == name or known.startswith(f"{name}[")]
                 if not own:
                     raise InputError(f"there is no design parameter {name!r}; these are {', '.join(names)}")
-                for known, x in zip(own, np.broadcast_to(np.asarray(value, float), len(own))):
+                if np.size(value) not in (1, len(own)):
+                    raise InputError(f"{name} has {len(own)} values, and {np.size(value)} were given")
+                for known, x in zip(own, np.broadcast_to(np.asarray(value, float).ravel(), len(own))):
                     values[known] = x
             design = list(values.values())
+        elif np.shape(design) != (len(self._episodes.parameters()),):
+            names = ", ".join(name for name, _, _ in self._episodes.parameters())
+            raise InputError(f"a design has one value for each of {names}; {np.size(design)} were given")
+        for (name, low, high), value in zip(self._episodes.parameters(), design):
+            if not low <= value <= high:
+                raise InputError(f"{name} = {float(value)} is outside of its limits, {low} to {high}")
         self._episodes.build(lane, np.asarray(design, float).tolist())
 
     @property
@@ -121,7 +129,7 @@ class Env(_Stepped, gymnasium.Env["Observation", "NDArray[Any]"]):
                  world: World = "training", scale_actions: bool = True, scale_observations: bool = True,
                  progress: float = 1.0, horizon: int | None = None, render_mode: None = None) -> None:  # fmt: skip
         if render_mode is not None:
-            raise InputError(f"render_mode = {render_mode!r}; pictures are drawn by `hwasp play`, and here there are none")
+            raise NoPictures(f"render_mode = {render_mode!r}; pictures are drawn by `hwasp play`, and here there are none")
         self.observation_space, self.action_space = self._open(
             experiment, 1, 1, method, settings, world, scale_actions, scale_observations, progress, horizon
         )
@@ -134,6 +142,7 @@ class Env(_Stepped, gymnasium.Env["Observation", "NDArray[Any]"]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
+        _known(options, "design")
         if options and "design" in options:
             self._designed(0, options["design"])
         if seed is None and not self._seeded:
@@ -174,16 +183,29 @@ class Env(_Stepped, gymnasium.Env["Observation", "NDArray[Any]"]):
         return (_env, (self.experiment, self._options))
 
 
+class NoPictures(InputError, TypeError):
+    """Nothing is drawn here. Whoever asks for pictures on a chance asks again without them."""
+
+
+def _known(options: dict[str, Any] | None, *known: str) -> None:
+    for name in options or ():
+        if name not in known:
+            raise InputError(f"reset has no option {name!r}; its options are {', '.join(known)}")
+
+
 def _env(experiment: Experiment, options: dict[str, Any]) -> Env:
     return Env(experiment, method=experiment.method, **options)
 
 
 class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any]", "NDArray[Any]"]):
-    """Many environments of an experiment, stepped in Rust by `threads` threads (all cores where none is given).
+    """Many environments of an experiment, stepped in Rust by `threads` threads: all cores where none is given and a step is worth it.
 
     The options of `Env` apply. `autoreset_mode` is Gymnasium's: `NEXT_STEP` (the default), `SAME_STEP`, with `final_obs` and
     `final_info` in the info, or `DISABLED`, where `reset(options={"reset_mask": mask})` starts the lanes of a mask. Environment i has
     the seed `seed + i`, and gives the bits of an `Env` with that seed, for any number of threads.
+
+    `reset(options={"design": designs})` builds the hardware: to one design for all, or to one for each (a list of dicts, or an array
+    `(num_envs, parameters)`), of the lanes of a `reset_mask` where there is one.
 
     Arrays are new ones in each step; with `copy=False` they are the same ones, written anew.
     """
@@ -199,10 +221,9 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
                  scale_observations: bool = True, progress: float = 1.0, horizon: int | None = None,
                  render_mode: None = None) -> None:  # fmt: skip
         if render_mode is not None:
-            raise InputError(f"render_mode = {render_mode!r}; many environments are not drawn")
-        autoreset_mode = AutoresetMode(autoreset_mode)
-        if threads is None:
-            threads = cores()
+            raise NoPictures(f"render_mode = {render_mode!r}; many environments are not drawn")
+        named = isinstance(autoreset_mode, str) and autoreset_mode in AutoresetMode.__members__
+        autoreset_mode = AutoresetMode[autoreset_mode] if named else AutoresetMode(autoreset_mode)  # type: ignore[misc]
         self.single_observation_space, self.single_action_space = self._open(
             experiment, num_envs, threads, method, settings, world, scale_actions, scale_observations, progress, horizon
         )
@@ -225,6 +246,7 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         n, options = self.num_envs, options or {}
+        _known(options, "design", "reset_mask")
         super().reset(seed=int(seed) if isinstance(seed, (int, np.integer)) else None)
         mask = np.ones(n, bool) if options.get("reset_mask") is None else np.asarray(options["reset_mask"], bool)
         seeds: list[int | None]
@@ -240,8 +262,12 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         first = self._seed() if fresh else 0
         for i in fresh:
             seeds[i] = first + int(i)
-        for i in np.flatnonzero(mask) if "design" in options else ():
-            self._designed(int(i), options["design"])
+        if "design" in options:
+            design = options["design"]
+            # One for all, or one for each.
+            each = not isinstance(design, dict) and len(design) == n and np.ndim(design[0]) + isinstance(design[0], dict) > 0
+            for i in np.flatnonzero(mask):
+                self._designed(int(i), design[i] if each else design)
         self._seeded |= mask
         return self._episodes.reset(seeds, mask.tolist()), {}
 
@@ -267,7 +293,8 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
         if hasattr(self, "_episodes"):
             self._episodes.close()
 
-    def design(self, i: int = 0) -> dict[str, float]:
-        """The design of environment `i` by the names of parameters, SI."""
+    @property
+    def designs(self) -> list[dict[str, float]]:
+        """The design of each environment by the names of parameters, SI."""
         names = [name for name, _, _ in self._episodes.parameters()]
-        return dict(zip(names, self._episodes.design(i).tolist()))
+        return [dict(zip(names, self._episodes.design(i).tolist())) for i in range(self.num_envs)]

@@ -7,6 +7,7 @@ from functools import update_wrapper
 from typing import TYPE_CHECKING
 
 from ._hwasp import Number, trace
+from .errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -52,7 +53,14 @@ class _Named:
         try:
             return self._values[name]
         except KeyError:
-            raise AttributeError(f"there is no `{name}` here, but {', '.join(self._values) or 'nothing'}") from None
+            there = f"there are {', '.join(self._values)}" if self._values else "nothing was named"
+            raise AttributeError(f"there is no `{name}` here; {there}") from None
+
+    def __dir__(self) -> list[str]:
+        return list(self._values)
+
+    def __repr__(self) -> str:
+        return f"({', '.join(self._values)})"
 
     def __getitem__(self, key: str | int | slice) -> Any:
         if isinstance(key, str):
@@ -104,13 +112,13 @@ class Law:
         for what, names in [("commands and states", [*(limits if isinstance(command, dict) else _names(command)), *states]), ("efforts", efforts)]:
             twice = [name for i, name in enumerate(names) if name in names[:i]]
             if twice:
-                raise ValueError(f"two {what} of the law are called {twice[0]}")
+                raise InputError(f"two {what} of the law are called {twice[0]}; each has a name of its own")
         for name, limit in limits.items():
             if limit is None:
                 continue
             low, high = limit
             if not float(low) < float(high):
-                raise ValueError(f"the limits {limit} of the command {name} are no interval")
+                raise InputError(f"the limits {limit} of the command {name} are no interval")
 
         def traced(uniforms: Iterable[Number], commands: Iterable[Number], columns: Iterable[Number]) -> list[Any]:
             uniforms = iter(uniforms)
@@ -182,18 +190,19 @@ class Law:
         """
         # A law in Python computes with numbers in SI, and units are the caller's business.
         si: Callable[[list[str]], list[str]] = lambda names: [f"si({name})" for name in names]
-        design = [
-            name if parameter.count == 1 else f"{name}[{i}]"
+        # A parameter of a model is one number: of a group each has a name of its own.
+        design = {
+            name if parameter.count == 1 else f"{name}_{i}": _table(parameter)
             for name, parameter in self.parameters.items()
             for i in range(parameter.count)
-        ]
+        }
         commands = [name if "." in name else f"command.{name}" for name in self.command]
-        definitions, formulas = self._law.text(si(design), si(commands + self.state_names))
+        definitions, formulas = self._law.text(si(list(design)), si(commands + self.state_names))
         efforts = [name if "." in name else prefix + name for name in self.effort_names]
         return {
             "task.define": dict(definitions),
             "task.law": dict(zip(efforts, formulas)),
-            "task.design": {name: _table(parameter) for name, parameter in self.parameters.items()},
+            "task.design": design,
         }
 
     def __repr__(self) -> str:
@@ -202,9 +211,13 @@ class Law:
 
     def _design(self, design: Design) -> list[float]:
         if not isinstance(design, dict):
-            return [float(value) for value in design]
+            values = [float(value) for value in design]
+            if len(values) != sum(parameter.count for parameter in self.parameters.values()):
+                groups = ", ".join(f"{name} ({parameter.count})" for name, parameter in self.parameters.items())
+                raise InputError(f"the design has {len(values)} values, and the parameters of the law are {groups or 'none'}")
+            return values
         if set(design) != set(self.parameters):
-            raise ValueError(f"the design has {', '.join(design)}, and the law {', '.join(self.parameters)}")
+            raise InputError(f"the design has {', '.join(design)}, and the law {', '.join(self.parameters)}")
         values: list[float] = []
         for name in self.parameters:
             value = design[name]
@@ -226,8 +239,6 @@ def _table(parameter: Parameter) -> dict[str, Any]:
     table: dict[str, Any] = {"limits": [quantity(value) for value in parameter.limits]}
     if parameter.initial is not None:
         table["initial"] = quantity(parameter.initial)
-    if parameter.count > 1:
-        table["count"] = parameter.count
     return table
 
 

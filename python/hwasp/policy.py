@@ -45,7 +45,7 @@ class Policy:
         return self._native.time_step
 
     def state_dict(self) -> dict[str, NDArray[np.float32]]:
-        """Every tensor of the policy as a numpy array, by its name in `policy.safetensors`: weights, what it subtracts from
+        """Every tensor of the policy as a numpy array, by its name in `policy.safetensors`: weights `(inputs, outputs)`, what it subtracts from
         observations and divides them by, design, log standard deviations."""
         return self._native.state_dict()
 

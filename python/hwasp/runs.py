@@ -38,8 +38,8 @@ class Experiment:
     It never changes; `set` gives another one. `str(experiment)` is the file with every setting in its place.
     """
 
-    def __init__(self, native: _hwasp.Experiment) -> None:
-        self._native = native
+    def __init__(self, what: Loadable | _hwasp.Experiment) -> None:
+        self._native = what if isinstance(what, _hwasp.Experiment) else Experiment.load(what)._native
 
     @classmethod
     def load(cls, what: Loadable) -> Self:
@@ -188,8 +188,8 @@ class Metrics(dict[str, "NDArray[Any]"]):
 class Run:
     """What a training left in its folder."""
 
-    def __init__(self, native: _hwasp.Run) -> None:
-        self._native = native
+    def __init__(self, path: PathLike | _hwasp.Run) -> None:
+        self._native = path if isinstance(path, _hwasp.Run) else _hwasp.Run.open(os.fspath(path))
 
     @classmethod
     def open(cls, path: PathLike) -> Self:

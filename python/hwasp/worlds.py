@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from . import _hwasp
 from .errors import InputError
+from .laws import Law
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -13,8 +14,6 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
-
-    from .laws import Law
 
     #: Places in the observation, or a function of environment and observation.
     State: TypeAlias = Sequence[int] | Callable[[Any, NDArray[Any]], ArrayLike]
@@ -50,7 +49,11 @@ def register_problem(name: str, make: str | Callable[[], Any], *, law: Law | Non
     An exception of the environment ends the training, with a checkpoint, and is raised.
     """
     maker = _maker(make)
+    if law is not None and not isinstance(law, Law):
+        raise TypeError(f"law is a hwasp.Law, and this is {law!r}: decorate the function with @hwasp.law(…)")
     env = maker()
+    if not hasattr(env, "step"):
+        raise InputError(f"make gives {env!r}, where an environment is needed: does it return the one that it makes?")
     try:
         told = _told(env, law, state, time_step, horizon)
     finally:
@@ -113,7 +116,10 @@ def _told(env: Any, law: Law | None, state: State | None, time_step: float | Non
         places = []
     else:
         if len(law.effort_names) != size:
-            raise InputError(f"the law gives {len(law.effort_names)} efforts, and an action has {size} components")
+            raise InputError(
+                f"the efforts of the law are {', '.join(law.effort_names)} ({len(law.effort_names)}), and an action has {size} "
+                "components: name one effort for each, in their order"
+            )
         free = [name for name, limits in law.command_limits.items() if limits is None]
         if free:
             raise InputError(f"the commands {', '.join(free)} have no limits: command={{{free[0]!r}: (-1, 1)}}")

@@ -142,6 +142,34 @@ def test_hardware_is_built_to_a_design():
             env.reset(options={"design": wrong})
 
 
+def test_each_environment_may_be_built_to_a_design_of_its_own():
+    env = hwasp.make_vec("reach", 3, method="fixed")
+    for designs in [[{"gear": 0.2}, {"gear": 0.4}, {"gear": 0.6}], np.array([[0.2], [0.4], [0.6]])]:
+        env.reset(seed=0, options={"design": designs})
+        assert [design["gear"] for design in env.designs] == [0.2, 0.4, 0.6]
+    env.reset(options={"design": {"gear": 0.5}})
+    assert env.designs == [{"gear": 0.5}] * 3
+    for wrong, says in [({"gear": 5.0}, "outside of its limits, 0.1 to 2"), ([0.1, 0.2], "2 were given"), ({"gear": [1, 2]}, "2 were given")]:
+        with pytest.raises(hwasp.InputError, match=says):
+            env.reset(options={"design": wrong})
+    with pytest.raises(hwasp.InputError, match="desing"):
+        env.reset(options={"desing": {}})
+
+
+def test_the_design_of_an_action_is_told():
+    env = hwasp.make("reach", method="minimal")
+    env.reset(seed=0)
+    for action, gear in [(-1.0, 0.1), (1.0, 2.0)]:
+        env.step(np.array([action, 0.0], np.float32))
+        assert env.design["gear"] == pytest.approx(gear)
+
+
+def test_learners_that_ask_for_pictures_go_without():
+    with pytest.raises(TypeError):
+        hwasp.make("reach", render_mode="rgb_array")
+    assert hwasp.make_vec("reach", 2, autoreset_mode="SAME_STEP").autoreset_mode is AutoresetMode.SAME_STEP
+
+
 def test_episodes_are_those_of_a_training():
     """reset(seed) and its successors are episodes 0, 1, 2 of a first iteration: others than those of another seed."""
     env = hwasp.make("mass-spring", method="fixed")
@@ -158,7 +186,7 @@ def test_lanes_without_a_seed_have_seeds_of_their_own():
         assert len({tuple(row) for row in start}) == 4
     env = hwasp.make_vec("mass-spring", 4, method="fixed")
     env.reset(options={"reset_mask": [True, False, False, True], "design": {"stiffness": 3.0}})
-    assert [env.design(i)["stiffness[0]"] == 3.0 for i in range(4)] == [True, False, False, True]
+    assert [design["stiffness[0]"] == 3.0 for design in env.designs] == [True, False, False, True]
     assert len({tuple(row) for row in env.reset(options={"reset_mask": [False, True, True, False]})[0]}) == 4
 
 
@@ -203,10 +231,8 @@ def test_what_cannot_be_is_told():
     with pytest.raises(hwasp.InputError):
         env.reset(seed=[1, 2, 3])
     env.reset(seed=[1, 1])
-    with pytest.raises(hwasp.InputError, match="no number 7"):
-        env.design(7)
     env.close()
-    for call in [lambda: env.step(np.zeros((2, 2))), lambda: env.reset(seed=0), env.design]:
+    for call in [lambda: env.step(np.zeros((2, 2))), lambda: env.reset(seed=0), lambda: env.designs]:
         with pytest.raises(hwasp.ClosedError, match="closed"):
             call()
     env.close()

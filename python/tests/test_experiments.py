@@ -162,6 +162,14 @@ def test_a_callback_hears_each_iteration_and_stops_the_training():
         resumed.resume(progress=False)
 
 
+def test_a_callback_stops_at_once_and_has_to_be_one():
+    run = reach().train("run", progress=False, callback=lambda row: False)
+    assert len(run.metrics["return"]) == 1
+    with pytest.raises(TypeError, match="callback"):
+        reach().train("other", callback=3)
+    assert not os.path.exists("other") and hwasp.Run("run").path == run.path and hwasp.Experiment("reach").seed == 0
+
+
 def test_an_exception_of_a_callback_is_raised_and_nothing_is_lost():
     def callback(row):
         if row["iteration"] == 3:

@@ -85,7 +85,7 @@ def test_what_a_law_must_not_do_is_told():
         tracing(lambda d, c, s: math.sin(c.x))
     with pytest.raises(TypeError, match="floor"):
         tracing(lambda d, c, s: np.floor(c.x))
-    with pytest.raises(AttributeError, match="there is no `z` here, but x"):
+    with pytest.raises(AttributeError, match="there is no `z` here; there are x"):
         tracing(lambda d, c, s: c.z)
     with pytest.raises(TypeError, match="str"):
         tracing(lambda d, c, s: c.x + "1 N")
@@ -124,6 +124,17 @@ def test_names_and_limits_of_a_law_are_checked():
     law = hwasp.law(command=["u"], effort="f")(lambda d, c, s: copy.deepcopy(2.0) * c.u)
     with pytest.raises(hwasp.InputError, match="a row at least"):
         law.gradcheck([], np.zeros((0, 1)))
+
+
+def test_a_group_of_parameters_goes_into_a_model_one_by_one():
+    @hwasp.law(
+        design={"k": hwasp.Parameter((1, 9), "N*m/rad", count=2)}, command=["shoulder"], state=["joint.shoulder.pos"], effort="shoulder"
+    )
+    def law(design, command, state):
+        return command.shoulder - design.k[0] * state[0] - design.k[1] * state[0] ** 3
+
+    arm = hwasp.Experiment.load("balanced-arm").set(law.settings()).set({"task.design.stiffness": {"limits": ["1 N/m", "2 N/m"]}})
+    assert {"k_0", "k_1"} < set(arm.to_dict()["task"]["design"])
 
 
 def test_the_library_of_laws_is_there():

@@ -181,7 +181,7 @@ def test_an_environment_that_cannot_be_made_is_told():
         (Point, {"horizon": 40, "law": spring(), "state": [7]}, "places"),
         (Point, {"horizon": 40, "law": spring(), "state": [0, 1]}, "reads 1"),
         (Point, {"horizon": 40, "law": hwasp.law(command=["a"], effort="f")(lambda d, c, s: c.a)}, "no limits"),
-        (Point, {"horizon": 40, "law": hwasp.law(command={"a": (0, 1)}, effort=["f", "g"])(lambda d, c, s: [c.a, c.a])}, "2 efforts"),
+        (Point, {"horizon": 40, "law": hwasp.law(command={"a": (0, 1)}, effort=["f", "g"])(lambda d, c, s: [c.a, c.a])}, "one effort for each"),
         (Point, {"horizon": 40, "law": hwasp.law(command={"a": (0, 1)}, state=["x"], effort="f")(lambda d, c, s: c.a)}, "say where"),
     ],
 )

@@ -1,7 +1,6 @@
 //! Who called the program: its own process, or Python.
 
 use std::ffi::OsString;
-use std::process::Command;
 use std::sync::OnceLock;
 
 static CALLER: OnceLock<Caller> = OnceLock::new();
@@ -33,8 +32,9 @@ impl Caller {
     }
 
     /// The program again, as a process of its own.
-    pub(crate) fn again(&self) -> Command {
-        let mut command = Command::new(&self.itself[0]);
+    #[cfg(feature = "mujoco")]
+    pub(crate) fn again(&self) -> std::process::Command {
+        let mut command = std::process::Command::new(&self.itself[0]);
         command.args(&self.itself[1..]);
         command
     }

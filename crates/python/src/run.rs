@@ -8,7 +8,7 @@ use hwasp_core::{Executor, Serial, Threads};
 use hwasp_export::{Deployed, Kind, Source, export};
 use hwasp_runs::metrics::{FIXED_COLUMNS, LEARNER, TERM};
 use hwasp_runs::{SUMMARY, SavedRun};
-use hwasp_training::{Assembly, evaluate, evaluate_native};
+use hwasp_training::{Assembly, EvaluateError, evaluate, evaluate_native};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -162,7 +162,10 @@ impl Run {
             } else {
                 evaluate(assembly, &params, asked, &*executor)
             };
-            evaluated.map_err(Wrong::failed)
+            evaluated.map_err(|error| match error {
+                EvaluateError::Assemble(error) => Wrong::input(error),
+                error => Wrong::failed(error),
+            })
         });
         plain(py, &evaluation??)
     }

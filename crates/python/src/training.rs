@@ -32,8 +32,8 @@ const WAITING: usize = 64;
 enum News {
     /// It begins: steps that it may take, and the names of the columns of a row.
     Began { env_steps: u64, path: PathBuf, names: Vec<String> },
-    /// An iteration is done.
-    Row(Vec<f64>),
+    /// An iteration is done. The training goes on when the answer has come.
+    Row(Vec<f64>, SyncSender<()>),
 }
 
 /// Tells what happens to whoever watches from another thread.
@@ -61,7 +61,14 @@ impl Observer for Teller {
                     row.undiscounted_return,
                 ];
                 values.extend(row.learner.iter().chain(&row.terms).chain(&row.design_totals));
-                News::Row(values)
+                let (answer, answered) = sync_channel(1);
+                if let Some(there) = &self.news
+                    && there.send(News::Row(values, answer)).is_ok()
+                {
+                    // Whoever watches has gone where none comes.
+                    let _ = answered.recv();
+                }
+                return Ok(());
             }
             _ => return Ok(()),
         };
@@ -165,9 +172,17 @@ fn listen(
                 };
                 call()
             }
-            Ok(News::Row(values)) => watch.map_or(Ok(false), |watch| tell(py, watch, &names, &values)).map(|stops| {
-                enough |= stops;
-            }),
+            Ok(News::Row(values, answer)) => {
+                let told = watch.map_or(Ok(false), |watch| tell(py, watch, &names, &values)).map(|stops| {
+                    enough |= stops;
+                });
+                if let (Some(stop), true) = (stop, enough || told.is_err()) {
+                    stop.store(true, Ordering::Relaxed);
+                }
+                // The one who asked may have gone.
+                let _ = answer.send(());
+                told
+            }
         };
         let end = || stop.map(|stop| stop.store(true, Ordering::Relaxed));
         if enough || raised.waits() {

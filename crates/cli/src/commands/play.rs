@@ -52,6 +52,7 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
 }
 
 #[cfg(not(feature = "renderer"))]
+#[allow(clippy::unnecessary_wraps, reason = "as the one that draws")]
 fn draw(_: &SavedRun, _: &[f32], _: &PlayOptions, _: (&str, &Path)) -> Result<(), Failure> {
     output::remark("note: this program was built without the feature `renderer`, and renders no GIF");
     Ok(())

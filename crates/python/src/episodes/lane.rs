@@ -13,7 +13,7 @@ pub(super) struct Interface {
     pub(super) limits: Vec<Option<(f64, f64)>>,
     /// How many of them, the first ones, are drawn once an episode.
     pub(super) drawn: usize,
-    /// Which design parameter each of them is.
+    /// Which design parameter each of them is, and those after them that are drawn in every step.
     pub(super) draws: Vec<usize>,
     /// The world's model is made from what is drawn, so that it is put into its start again when the draw is known.
     pub(super) restarts: bool,
@@ -40,13 +40,13 @@ impl Interface {
         let (drawn, space) = (policy.drawn_actions(), policy.space());
         let all = space.names();
         let place = |name: &String| all.iter().position(|known| known == name);
-        let draws: Vec<usize> = names[..drawn].iter().filter_map(place).collect();
+        let draws: Vec<usize> = names.iter().map_while(place).collect();
         let shaped = |&i: &usize| world.env.shaped_by.contains(&space.group_of(i).name);
         Self {
             env: world.env.clone(),
             limits,
             drawn,
-            restarts: draws.iter().any(shaped),
+            restarts: draws[..drawn].iter().any(shaped),
             draws,
             normalizer: scale_observations.then(|| policy.normalizer(params)),
             scaled,
@@ -163,11 +163,11 @@ impl Lane {
             }
             self.action[i] = interface.si(i, action(i));
         }
+        for (&i, &value) in interface.draws.iter().zip(&self.action) {
+            let (lo, hi) = self.decoder.law().design().bounds(i);
+            self.design[i] = value.clamp(lo, hi);
+        }
         if self.steps == 0 && interface.drawn > 0 {
-            for (&i, &value) in interface.draws.iter().zip(&self.action) {
-                let (lo, hi) = self.decoder.law().design().bounds(i);
-                self.design[i] = value.clamp(lo, hi);
-            }
             self.decoder.build(&self.design);
             if interface.restarts {
                 self.put(interface);

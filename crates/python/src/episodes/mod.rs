@@ -2,6 +2,9 @@
 
 mod lane;
 
+use std::num::NonZeroUsize;
+use std::time::{Duration, Instant};
+
 use hwasp_core::End;
 use hwasp_experiment::MOST_STEPS;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
@@ -20,13 +23,20 @@ use lane::{Interface, Lane};
 const MOST_LANES: usize = 65_536;
 /// Lanes that one thread steps before another one may take the next.
 const CHUNK: usize = 4;
+/// A step that takes longer is done sooner by several threads.
+const WORTH: Duration = Duration::from_micros(200);
+/// Steps in a row after which that is sure.
+const SURE: u32 = 4;
 
 /// Episodes in lock step.
 #[pyclass(module = "hwasp._hwasp")]
 pub(crate) struct Episodes {
     interface: Interface,
     lanes: Vec<Lane>,
-    threads: usize,
+    /// None where they are as many as there are cores, and come when a step is worth it.
+    threads: Option<usize>,
+    /// Steps in a row that were worth it.
+    worth: u32,
     /// The threads, and the process that has them: after a fork they are gone.
     pool: Option<(u32, ThreadPool)>,
     open: bool,
@@ -46,7 +56,7 @@ impl Episodes {
         py: Python<'_>,
         experiment: &Experiment,
         lanes: usize,
-        threads: usize,
+        threads: Option<usize>,
         deployment: bool,
         scale_actions: bool,
         scale_observations: bool,
@@ -59,7 +69,7 @@ impl Episodes {
         if !(1..=MOST_LANES).contains(&lanes) {
             return Err(error::input(format!("num_envs = {lanes}; it is from 1 to {MOST_LANES}")));
         }
-        if !(1..=MOST_THREADS).contains(&threads) {
+        if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
             return Err(error::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}")));
         }
         if !(0.0..=1.0).contains(&progress) {
@@ -77,7 +87,17 @@ impl Episodes {
             let lanes = (0..lanes).map(|_| Lane::new(&interface, policy, &design, world.make.make(horizon)));
             let lanes: Vec<Lane> = lanes.collect();
             let waiting = vec![false; lanes.len()];
-            Ok(Self { interface, lanes, threads, pool: None, open: true, waiting, actions: Vec::new(), raised })
+            Ok(Self {
+                interface,
+                lanes,
+                threads,
+                worth: 0,
+                pool: None,
+                open: true,
+                waiting,
+                actions: Vec::new(),
+                raised,
+            })
         });
         let made = made?;
         made.check_raised()?;
@@ -154,12 +174,16 @@ impl Episodes {
             }
         };
         let (lanes, pool) = (&mut self.lanes, self.pool.as_ref().map(|(_, pool)| pool));
+        let began = Instant::now();
         py.detach(|| match pool {
             Some(pool) => pool.install(|| {
                 lanes.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(work);
             }),
             None => lanes.iter_mut().enumerate().for_each(work),
         });
+        if self.pool.is_none() {
+            self.worth = if began.elapsed() > WORTH { self.worth + 1 } else { 0 };
+        }
         self.check_raised()?;
         let ended: Vec<usize> = (0..shape[0]).filter(|&i| self.lanes[i].end.is_some()).collect();
         self.waiting.fill(false);
@@ -337,7 +361,12 @@ impl Episodes {
     /// Makes the threads where they are wanted and not there: at first, and after a fork.
     fn attend_to_threads(&mut self) -> PyResult<()> {
         let process = std::process::id();
-        if self.threads == 1 || self.lanes.len() <= CHUNK {
+        let threads = match self.threads {
+            None if self.worth < SURE => 1,
+            None => std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
+            Some(threads) => threads,
+        };
+        if threads == 1 || self.lanes.len() <= CHUNK {
             return Ok(());
         }
         if let Some((owner, pool)) = self.pool.take() {
@@ -347,7 +376,7 @@ impl Episodes {
             }
             std::mem::forget(pool);
         }
-        let pool = ThreadPoolBuilder::new().num_threads(self.threads).build().map_err(Wrong::failed)?;
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Wrong::failed)?;
         self.pool = Some((process, pool));
         Ok(())
     }

@@ -203,7 +203,7 @@ class Episodes:
         experiment: Experiment,
         *,
         lanes: int,
-        threads: int,
+        threads: int | None,
         deployment: bool,
         scale_actions: bool,
         scale_observations: bool,

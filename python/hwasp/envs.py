@@ -86,12 +86,13 @@ class _Stepped:
                     values[known] = x
             design = list(values.values())
         elif np.shape(design) != (len(self._episodes.parameters()),):
-            names = ", ".join(name for name, _, _ in self._episodes.parameters())
-            raise InputError(f"a design has one value for each of {names}; {np.size(design)} were given")
-        for (name, low, high), value in zip(self._episodes.parameters(), design):
+            known = ", ".join(name for name, _, _ in self._episodes.parameters())
+            raise InputError(f"a design has one value for each of {known}; {np.size(design)} were given")
+        built = np.asarray(design, float).tolist()
+        for (name, low, high), value in zip(self._episodes.parameters(), built):
             if not low <= value <= high:
-                raise InputError(f"{name} = {float(value)} is outside of its limits, {low} to {high}")
-        self._episodes.build(lane, np.asarray(design, float).tolist())
+                raise InputError(f"{name} = {value} is outside of its limits, {low} to {high}")
+        self._episodes.build(lane, built)
 
     @property
     def dt(self) -> float:

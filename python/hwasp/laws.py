@@ -211,11 +211,11 @@ class Law:
 
     def _design(self, design: Design) -> list[float]:
         if not isinstance(design, dict):
-            values = [float(value) for value in design]
-            if len(values) != sum(parameter.count for parameter in self.parameters.values()):
+            given = [float(value) for value in design]
+            if len(given) != sum(parameter.count for parameter in self.parameters.values()):
                 groups = ", ".join(f"{name} ({parameter.count})" for name, parameter in self.parameters.items())
-                raise InputError(f"the design has {len(values)} values, and the parameters of the law are {groups or 'none'}")
-            return values
+                raise InputError(f"the design has {len(given)} values, and the parameters of the law are {groups or 'none'}")
+            return given
         if set(design) != set(self.parameters):
             raise InputError(f"the design has {', '.join(design)}, and the law {', '.join(self.parameters)}")
         values: list[float] = []

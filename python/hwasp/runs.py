@@ -39,7 +39,7 @@ class Experiment:
     """
 
     def __init__(self, what: Loadable | _hwasp.Experiment) -> None:
-        self._native = what if isinstance(what, _hwasp.Experiment) else Experiment.load(what)._native
+        self._native: _hwasp.Experiment = what if isinstance(what, _hwasp.Experiment) else Experiment.load(what)._native
 
     @classmethod
     def load(cls, what: Loadable) -> Self:

@@ -109,7 +109,7 @@ pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>
     let stopped = Arc::clone(&stop);
     let work = thread::Builder::new().name("hwasp-train".to_owned()).spawn(move || {
         let (mut teller, alive) = (teller, sender);
-        let ended = session.run(&mut teller, &stopped).map(drop).map_err(Wrong::from);
+        let ended = known_to_python(|| session.run(&mut teller, &stopped).map(drop).map_err(Wrong::from));
         drop((teller, alive));
         ended
     })?;
@@ -214,7 +214,7 @@ pub(crate) fn attended<T: Send + 'static>(
     let (alive, news) = sync_channel(1);
     let work = thread::Builder::new().name("hwasp-work".to_owned()).spawn(move || {
         let _alive: SyncSender<News> = alive;
-        work()
+        known_to_python(work)
     })?;
     match listen(py, news, None, stop, raised) {
         Err(Unheard { error, at_once: true }) => return Err(error),
@@ -226,6 +226,11 @@ pub(crate) fn attended<T: Send + 'static>(
     }
     let done = py.detach(|| work.join()).map_err(broken)?;
     raised.take().map_or(Ok(done), Err)
+}
+
+/// Does work on a thread that Python keeps its notes of: to make them anew for each call of an environment takes longer than the call.
+fn known_to_python<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    Python::attach(|py| py.detach(work))
 }
 
 /// A thread that panicked: a fault of the program.

@@ -25,8 +25,6 @@ use crate::{command, log};
 pub(crate) const MOST_THREADS: usize = 1024;
 /// How often signals are looked for where nothing happens.
 const PATIENCE: Duration = Duration::from_millis(50);
-/// Rows that may wait for whoever watches; then the training waits.
-const WAITING: usize = 64;
 
 /// What there is to tell.
 enum News {
@@ -104,7 +102,7 @@ pub(crate) fn train(py: Python<'_>, training: Training, watch: Option<Py<PyAny>>
     let path = session.path().to_owned();
     let raised = Raised::of(session.assembly().experiment().task.name());
     let stop = Arc::new(AtomicBool::new(false));
-    let (sender, news) = sync_channel(WAITING);
+    let (sender, news) = sync_channel(1);
     let teller = Teller { news: watch.is_some().then(|| sender.clone()), path: path.clone() };
     let stopped = Arc::clone(&stop);
     let work = thread::Builder::new().name("hwasp-train".to_owned()).spawn(move || {

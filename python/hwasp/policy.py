@@ -70,7 +70,7 @@ class Policy:
             parts += [linear, activations[activation]()]
         network = torch.nn.Sequential(*parts)
 
-        class Controller(torch.nn.Module):
+        class Controller(torch.nn.Module):  # type: ignore[misc]
             center: torch.Tensor
             scale: torch.Tensor
             low: torch.Tensor

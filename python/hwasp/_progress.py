@@ -60,7 +60,7 @@ def _words(row: dict[str, Any], total: int) -> str:
     left = max(total - row["env_steps"], 0) / max(rate, 1e-9)
     known = ("iteration", "env_steps", "wall_s", "discounted_return", "return")
     totals = [f"{k} {v:.4g}" for k, v in row.items() if k not in known and not k.startswith(("learner.", "reward."))]
-    return "  ".join([worth, *totals[:3], f"{rate / 1e3:.0f}k steps/s", f"{left:.0f} s left"])
+    return "  ".join([worth, *totals[:3], f"{rate / 1e3:.0f}k steps/s" if rate >= 1e4 else f"{rate:.0f} steps/s", f"{left:.0f} s left"])
 
 
 class _Terminal:

@@ -71,15 +71,19 @@ class _Stepped:
         """The seed of whoever was given none."""
         return int(self.np_random.integers(2**31))
 
+    def _design_of(self, lane: int) -> dict[str, float]:
+        """The design of a lane by the names of parameters, SI."""
+        names = [name for name, _, _ in self._episodes.parameters()]
+        return dict(zip(names, self._episodes.design(lane).tolist()))
+
     def _designed(self, lane: int, design: ArrayLike | dict[str, Any]) -> None:
         """Builds the hardware of a lane to a design: a dict by the names of parameters, or all of them in order."""
         if isinstance(design, dict):
-            names = [name for name, _, _ in self._episodes.parameters()]
-            values = dict(zip(names, self._episodes.design(lane)))
+            values = self._design_of(lane)
             for name, value in design.items():
-                own = [known for known in names if known == name or known.startswith(f"{name}[")]
+                own = [known for known in values if known == name or known.startswith(f"{name}[")]
                 if not own:
-                    raise InputError(f"there is no design parameter {name!r}; these are {', '.join(names)}")
+                    raise InputError(f"there is no design parameter {name!r}; these are {', '.join(values)}")
                 if np.size(value) not in (1, len(own)):
                     raise InputError(f"{name} has {len(own)} values, and {np.size(value)} were given")
                 for known, x in zip(own, np.broadcast_to(np.asarray(value, float).ravel(), len(own))):
@@ -172,8 +176,7 @@ class Env(_Stepped, gymnasium.Env["Observation", "NDArray[Any]"]):
     @property
     def design(self) -> dict[str, float]:
         """The design of the episode by the names of parameters, SI."""
-        names = [name for name, _, _ in self._episodes.parameters()]
-        return dict(zip(names, self._episodes.design(0).tolist()))
+        return self._design_of(0)
 
     @property
     def state(self) -> dict[str, float]:
@@ -297,5 +300,4 @@ class VectorEnv(_Stepped, gymnasium.vector.VectorEnv["Observation", "NDArray[Any
     @property
     def designs(self) -> list[dict[str, float]]:
         """The design of each environment by the names of parameters, SI."""
-        names = [name for name, _, _ in self._episodes.parameters()]
-        return [dict(zip(names, self._episodes.design(i).tolist())) for i in range(self.num_envs)]
+        return [self._design_of(i) for i in range(self.num_envs)]

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 use crate::error::Wrong;
 
-static REGISTERED: LazyLock<Mutex<Catalogue>> = LazyLock::new(|| Mutex::new(hwasp_builtin::catalogue()));
+static BUILTIN: LazyLock<Catalogue> = LazyLock::new(hwasp_builtin::catalogue);
+static REGISTERED: LazyLock<Mutex<Catalogue>> = LazyLock::new(|| Mutex::new(BUILTIN.clone()));
 
 fn registered() -> MutexGuard<'static, Catalogue> {
     REGISTERED.lock().unwrap_or_else(PoisonError::into_inner)
@@ -19,16 +20,25 @@ pub(crate) fn catalogue() -> Catalogue {
     registered().clone()
 }
 
+/// Whether a problem comes with the program.
+fn is_builtin(name: &str) -> bool {
+    BUILTIN.problems().iter().any(|problem| problem.name() == name)
+}
+
+/// Puts another catalogue in the place of this one. What Python does when its objects go may come here again, so that they go last.
+fn replace(mut registered: MutexGuard<'_, Catalogue>, other: Catalogue) {
+    let old = std::mem::replace(&mut *registered, other);
+    drop(registered);
+    drop(old);
+}
+
 /// Takes in a problem; one of the same name from Python is replaced, one that comes with the program is not.
 pub(crate) fn add(problem: impl Problem) -> Result<(), Wrong> {
-    let mut catalogue = registered();
-    let name = problem.name().to_owned();
-    let own = hwasp_builtin::catalogue().problems().iter().any(|known| known.name() == name);
-    let without = if own { catalogue.clone() } else { catalogue.without(&name) };
-    let old = std::mem::replace(&mut *catalogue, without.with(problem).map_err(Wrong::input)?);
-    // What Python does when its objects go may come here again.
-    drop(catalogue);
-    drop(old);
+    let catalogue = registered();
+    let name = problem.name();
+    let without = if is_builtin(name) { catalogue.clone() } else { catalogue.without(name) };
+    let with = without.with(problem).map_err(Wrong::input)?;
+    replace(catalogue, with);
     Ok(())
 }
 
@@ -47,13 +57,9 @@ pub(crate) fn problems() -> Vec<String> {
 /// Takes a problem out that was registered from Python.
 #[pyfunction]
 pub(crate) fn forget(name: &str) {
-    let own = hwasp_builtin::catalogue().problems().iter().any(|known| known.name() == name);
-    if !own {
-        let mut catalogue = registered();
+    if !is_builtin(name) {
+        let catalogue = registered();
         let without = catalogue.without(name);
-        let old = std::mem::replace(&mut *catalogue, without);
-        // What Python does when its objects go may come here again.
-        drop(catalogue);
-        drop(old);
+        replace(catalogue, without);
     }
 }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hwasp_core::{EnvSpec, Law};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::intern;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -79,7 +80,35 @@ pub(super) struct Known {
     pub(super) raised: Raised,
 }
 
+/// An environment with its methods looked up. It is closed, as whoever makes one of Gymnasium's has to.
+pub(super) struct Methods {
+    pub(super) env: Py<PyAny>,
+    pub(super) step: Py<PyAny>,
+    pub(super) reset: Py<PyAny>,
+}
+
+impl Drop for Methods {
+    /// Where the interpreter is about to end, it closes them.
+    fn drop(&mut self) {
+        Python::try_attach(|py| drop(self.env.call_method0(py, intern!(py, "close"))));
+    }
+}
+
 impl Known {
+    /// Makes an environment. Where that fails, the exception waits, and the text is the fault of the environment.
+    pub(super) fn made(&self) -> Result<Methods, String> {
+        let made = Python::attach(|py| -> PyResult<Methods> {
+            let env = self.make.bind(py).call0()?;
+            let (step, reset) = (env.getattr("step")?.unbind(), env.getattr("reset")?.unbind());
+            Ok(Methods { step, reset, env: env.unbind() })
+        });
+        made.map_err(|error| {
+            let fault = error.to_string();
+            self.raised.keep(error);
+            fault
+        })
+    }
+
     /// Actions as an environment takes them, within their limits: of one environment, or of so many in a row.
     pub(super) fn action<'py>(
         &self,
@@ -114,6 +143,14 @@ impl Known {
             *state = seen[place];
         }
         Ok(())
+    }
+}
+
+/// What was made, or the fault where nothing was.
+pub(super) fn split(made: Result<Methods, String>) -> (Option<Methods>, Option<String>) {
+    match made {
+        Ok(methods) => (Some(methods), None),
+        Err(fault) => (None, Some(fault)),
     }
 }
 

@@ -96,7 +96,7 @@ pub(crate) fn register(py: Python<'_>, told: Told) -> PyResult<()> {
     };
     let ports = law.ports().clone();
     let command = |(name, lo, hi)| CommandPort { name, dimension: Dimension::None, lo, hi, direct: !acts_by_effort };
-    let half = |(lo, hi): &(f64, f64)| (hi - lo).is_finite().then_some(EXPLORED * (hi - lo));
+    let std = |(lo, hi): &(f64, f64)| (hi - lo).is_finite().then_some(EXPLORED * (hi - lo));
     let spec = EnvSpec {
         observation,
         state: ports.state.iter().map(plain).collect(),
@@ -108,7 +108,7 @@ pub(crate) fn register(py: Python<'_>, told: Told) -> PyResult<()> {
         shaped_by: told.shaped_by,
         terms: Vec::new(),
     };
-    let effort_std = ports.effort.iter().zip(&told.limits).map(|(_, limits)| half(limits)).collect();
+    let effort_std = ports.effort.iter().zip(&told.limits).map(|(_, limits)| std(limits)).collect();
     let problem = PythonProblem(Arc::new(Known {
         raised: Raised::begin(&told.name),
         name: told.name,

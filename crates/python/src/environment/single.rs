@@ -9,15 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rand::Rng;
 
-use super::known::{Known, read};
+use super::known::{Known, Methods, read, split};
 use crate::error;
-
-/// An environment with its methods looked up.
-struct Methods {
-    env: Py<PyAny>,
-    step: Py<PyAny>,
-    reset: Py<PyAny>,
-}
 
 pub(super) struct PythonEnvironment {
     known: Arc<Known>,
@@ -35,34 +28,18 @@ impl PythonEnvironment {
     pub(super) fn new(known: &Arc<Known>, horizon: Option<usize>) -> Self {
         let mut spec = known.spec.clone();
         spec.horizon = horizon.unwrap_or(spec.horizon);
-        let made = Python::attach(|py| -> PyResult<Methods> {
-            let env = known.make.bind(py).call0()?;
-            let (step, reset) = (env.getattr("step")?.unbind(), env.getattr("reset")?.unbind());
-            Ok(Methods { step, reset, env: env.unbind() })
-        });
-        let fault = made.as_ref().err().map(ToString::to_string);
+        let (methods, fault) = split(known.made());
         Self {
             seen: vec![0.0; spec.observation.len()],
             state: vec![0.0; spec.state.len()],
             known: Arc::clone(known),
-            methods: made.map_err(|error| known.raised.keep(error)).ok(),
+            methods,
             spec,
             taken: 0,
             fault,
         }
     }
-}
 
-impl Drop for PythonEnvironment {
-    /// Closes it, as whoever makes an environment of Gymnasium's has to. Where the interpreter is about to end, it closes them.
-    fn drop(&mut self) {
-        if let Some(methods) = self.methods.take() {
-            Python::try_attach(|py| drop(methods.env.call_method0(py, intern!(py, "close"))));
-        }
-    }
-}
-
-impl PythonEnvironment {
     /// Does what may raise an exception, which then waits for the main thread.
     fn attempt<T>(&mut self, work: impl FnOnce(&mut Self, Python<'_>) -> PyResult<T>) -> Option<T> {
         Python::attach(|py| match work(self, py) {

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rand::Rng;
 
-use super::known::{Known, read};
+use super::known::{Known, Methods, read, split};
 use crate::error;
 
 /// Lanes of one vector environment.
@@ -39,12 +39,6 @@ pub(super) struct Company {
     fault: Option<String>,
 }
 
-struct Methods {
-    env: Py<PyAny>,
-    step: Py<PyAny>,
-    reset: Py<PyAny>,
-}
-
 impl Company {
     /// So many lanes, of as many companies as it takes.
     pub(super) fn lanes(known: &Arc<Known>, count: usize, horizon: Option<usize>) -> Vec<Box<dyn Environment>> {
@@ -63,12 +57,7 @@ impl Company {
     }
 
     fn new(known: &Arc<Known>) -> Self {
-        let made = Python::attach(|py| -> PyResult<Methods> {
-            let env = known.make.bind(py).call0()?;
-            let (step, reset) = (env.getattr("step")?.unbind(), env.getattr("reset")?.unbind());
-            Ok(Methods { step, reset, env: env.unbind() })
-        });
-        let fault = made.as_ref().err().map(ToString::to_string);
+        let (methods, fault) = split(known.made());
         let (lanes, spec) = (known.lanes.unwrap_or(1), &known.spec);
         Self {
             actions: vec![0.0; lanes * known.limits.len()],
@@ -81,7 +70,7 @@ impl Company {
             reward: vec![0.0; lanes],
             terminated: vec![0.0; lanes],
             truncated: vec![0.0; lanes],
-            methods: made.map_err(|error| known.raised.keep(error)).ok(),
+            methods,
             known: Arc::clone(known),
             lanes,
             fault,
@@ -172,14 +161,6 @@ impl Company {
             self.known.read_state(methods.env.bind(observation.py()), &row, seen, state)?;
         }
         Ok(())
-    }
-}
-
-impl Drop for Company {
-    fn drop(&mut self) {
-        if let Some(methods) = self.methods.take() {
-            Python::try_attach(|py| drop(methods.env.call_method0(py, intern!(py, "close"))));
-        }
     }
 }
 

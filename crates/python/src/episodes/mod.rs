@@ -37,8 +37,7 @@ pub(crate) struct Episodes {
     threads: Option<usize>,
     /// Steps in a row that were worth it.
     worth: u32,
-    /// The threads, and the process that has them: after a fork they are gone.
-    pool: Option<(u32, ThreadPool)>,
+    pool: Option<Pool>,
     open: bool,
     /// Lanes whose episode ended with the last step; they begin anew with the next one.
     waiting: Vec<bool>,
@@ -173,7 +172,7 @@ impl Episodes {
                 lane.last.copy_from_slice(&lane.obs);
             }
         };
-        let (lanes, pool) = (&mut self.lanes, self.pool.as_ref().map(|(_, pool)| pool));
+        let (lanes, pool) = (&mut self.lanes, self.pool.as_ref().and_then(|pool| pool.threads.as_ref()));
         let began = Instant::now();
         py.detach(|| match pool {
             Some(pool) => pool.install(|| {
@@ -316,12 +315,7 @@ impl Episodes {
     fn close(&mut self, py: Python<'_>) {
         self.open = false;
         let (lanes, pool) = (std::mem::take(&mut self.lanes), self.pool.take());
-        py.detach(|| drop(lanes));
-        // The threads of another process are not here to be ended.
-        match pool {
-            Some((owner, pool)) if owner != std::process::id() => std::mem::forget(pool),
-            pool => py.detach(|| drop(pool)),
-        }
+        py.detach(|| drop((lanes, pool)));
     }
 
     #[getter]
@@ -330,12 +324,16 @@ impl Episodes {
     }
 }
 
-impl Drop for Episodes {
+/// Threads of a process. After a fork they are not here to be ended.
+struct Pool {
+    process: u32,
+    threads: Option<ThreadPool>,
+}
+
+impl Drop for Pool {
     fn drop(&mut self) {
-        if let Some((owner, pool)) = self.pool.take()
-            && owner != std::process::id()
-        {
-            std::mem::forget(pool);
+        if self.process != std::process::id() {
+            std::mem::forget(self.threads.take());
         }
     }
 }
@@ -369,15 +367,10 @@ impl Episodes {
         if threads == 1 || self.lanes.len() <= CHUNK {
             return Ok(());
         }
-        if let Some((owner, pool)) = self.pool.take() {
-            if owner == process {
-                self.pool = Some((owner, pool));
-                return Ok(());
-            }
-            std::mem::forget(pool);
+        if self.pool.as_ref().is_none_or(|pool| pool.process != process) {
+            let threads = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Wrong::failed)?;
+            self.pool = Some(Pool { process, threads: Some(threads) });
         }
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Wrong::failed)?;
-        self.pool = Some((process, pool));
         Ok(())
     }
 

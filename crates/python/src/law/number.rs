@@ -119,32 +119,12 @@ impl Number {
         operated(slf, other, "a1 / a0")
     }
 
-    fn __pow__<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        modulo: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        if !modulo.is_none() {
-            return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
-        }
-        if foreign(other) {
-            return Ok(slf.py().NotImplemented().into_bound(slf.py()));
-        }
-        power(slf.py(), slf.as_any(), other)
+    fn __pow__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>, modulo: &Bound<'py, PyAny>) -> Operated<'py> {
+        power(slf.as_any(), other, other, modulo)
     }
 
-    fn __rpow__<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        modulo: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        if !modulo.is_none() {
-            return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
-        }
-        if foreign(other) {
-            return Ok(slf.py().NotImplemented().into_bound(slf.py()));
-        }
-        power(slf.py(), other, slf.as_any())
+    fn __rpow__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>, modulo: &Bound<'py, PyAny>) -> Operated<'py> {
+        power(other, slf.as_any(), other, modulo)
     }
 
     /// numpy asks the elements of an array for functions by name.
@@ -246,8 +226,20 @@ impl Number {
     }
 }
 
-/// A power whose exponent is a plain number, or any of a positive base.
-fn power<'py>(py: Python<'py>, base: &Bound<'py, PyAny>, exponent: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+/// A power whose exponent is a plain number, or any of a positive base. `other` is the operand that may be none of ours.
+fn power<'py>(
+    base: &Bound<'py, PyAny>,
+    exponent: &Bound<'py, PyAny>,
+    other: &Bound<'py, PyAny>,
+    modulo: &Bound<'py, PyAny>,
+) -> Operated<'py> {
+    let py = base.py();
+    if !modulo.is_none() {
+        return Err(PyTypeError::new_err("a power of a law's number has no modulus"));
+    }
+    if foreign(other) {
+        return Ok(py.NotImplemented().into_bound(py));
+    }
     match exponent.extract::<f64>() {
         Ok(exponent) if !exponent.is_finite() => Err(error::input(format!("{exponent} is no exponent of a law"))),
         Ok(exponent) => compute(py, &format!("a0^({exponent:?})"), std::slice::from_ref(base)),

@@ -15,7 +15,7 @@ use crate::environment::Raised;
 use crate::error::{self, Wrong};
 use crate::experiment::Experiment;
 use crate::log;
-use crate::training::{MOST_THREADS, attended};
+use crate::training::{attended, sound_threads};
 
 /// Nobody watches; what fails is told by the table.
 struct Quiet;
@@ -43,9 +43,7 @@ pub(crate) fn compare(
     threshold: Option<f64>,
 ) -> PyResult<String> {
     log::begin();
-    if !(1..=MOST_THREADS).contains(&threads) {
-        return Err(error::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}")));
-    }
+    let threads = sound_threads(threads)?.get();
     let contenders = methods.iter().map(|text| Contender::parse(text)).collect::<Result<Vec<_>, _>>();
     let contenders = contenders.map_err(Wrong::input)?;
     let last = first_seed.checked_add(seeds).filter(|last| i64::try_from(*last).is_ok());

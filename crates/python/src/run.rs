@@ -19,7 +19,7 @@ use crate::error::Wrong;
 use crate::experiment::Experiment;
 use crate::log;
 use crate::policy::Policy;
-use crate::training::{MOST_THREADS, asked, attended, train};
+use crate::training::{asked, attended, sound_threads, train};
 use crate::value::{plain, text, toml_value};
 
 /// A run folder: its experiment, design, policy, curves and figures.
@@ -223,13 +223,9 @@ impl Run {
 /// The most episodes of an evaluation.
 const MOST_EPISODES: u64 = 1_000_000_000;
 
-/// More threads than anyone asks for.
-const EXCESSIVE: usize = MOST_THREADS + 1;
-
 /// So many threads.
-pub(crate) fn executor(threads: usize) -> Result<Box<dyn Executor>, Wrong> {
-    match threads {
-        0 | EXCESSIVE.. => Err(Wrong::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}"))),
+fn executor(threads: usize) -> Result<Box<dyn Executor>, Wrong> {
+    match sound_threads(threads)?.get() {
         1 => Ok(Box::new(Serial)),
         threads => Ok(Box::new(Threads::new(threads).map_err(Wrong::failed)?)),
     }

@@ -22,7 +22,7 @@ use crate::value::kind;
 use crate::{command, log};
 
 /// The most threads that one may ask for.
-pub(crate) const MOST_THREADS: usize = 1024;
+const MOST_THREADS: usize = 1024;
 /// How often signals are looked for where nothing happens.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -78,6 +78,12 @@ impl Observer for Teller {
     }
 }
 
+/// So many threads, where that may be.
+pub(crate) fn sound_threads(threads: usize) -> Result<NonZeroUsize, Wrong> {
+    let sound = NonZeroUsize::new(threads).filter(|threads| threads.get() <= MOST_THREADS);
+    sound.ok_or_else(|| Wrong::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}")))
+}
+
 /// A training as keywords ask for it.
 pub(crate) fn asked(
     py: Python<'_>,
@@ -86,8 +92,7 @@ pub(crate) fn asked(
     checkpoint_every: f64,
     tensorboard: bool,
 ) -> PyResult<Training> {
-    let threads = NonZeroUsize::new(threads).filter(|threads| threads.get() <= MOST_THREADS);
-    let threads = threads.ok_or_else(|| error::input(format!("threads is from 1 to {MOST_THREADS}")))?;
+    let threads = sound_threads(threads)?;
     let checkpoint_every = Duration::try_from_secs_f64(checkpoint_every)
         .map_err(|_| error::input(format!("checkpoint_every is a time in s, not {checkpoint_every}")))?;
     Ok(Training { what, threads, checkpoint_every, tensorboard, command_line: command::line(py) })

@@ -16,7 +16,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::environment::Raised;
 use crate::error::{self, Wrong};
 use crate::experiment::Experiment;
-use crate::training::MOST_THREADS;
+use crate::training::sound_threads;
 use lane::{Interface, Lane};
 
 /// The most environments of one vector.
@@ -68,9 +68,7 @@ impl Episodes {
         if !(1..=MOST_LANES).contains(&lanes) {
             return Err(error::input(format!("num_envs = {lanes}; it is from 1 to {MOST_LANES}")));
         }
-        if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
-            return Err(error::input(format!("threads = {threads}; it is from 1 to {MOST_THREADS}")));
-        }
+        threads.map(sound_threads).transpose()?;
         if !(0.0..=1.0).contains(&progress) {
             return Err(error::input(format!("progress = {progress}; it is from 0 to 1")));
         }

@@ -71,7 +71,7 @@ fn main() {
         1e-9 * machine::bandwidth(cores)
     );
 
-    println!("\n| product by faer, m × k × n | GFLOP/s | of the peak |\n|---|---|---|");
+    println!("\n| product by nalgebra, m × k × n | GFLOP/s | of the peak |\n|---|---|---|");
     let mut best: f64 = 0.0;
     for (m, k, n) in
         [(ROWS, WIDTH, WIDTH), (BLOCK, WIDTH, WIDTH), (WIDTH, ROWS, WIDTH), (WIDTH, BLOCK, WIDTH), (ROWS, 11, WIDTH)]
@@ -119,7 +119,7 @@ fn main() {
     let one_forward = first + rest;
     let one_vjp = first + 2.0 * rest;
     let one_jvp = first + 2.0 * rest;
-    println!("\n| pass over {ROWS} rows | ms | GFLOP/s | of the peak | of faer's best |\n|---|---|---|---|---|");
+    println!("\n| pass over {ROWS} rows | ms | GFLOP/s | of the peak | of nalgebra's best |\n|---|---|---|---|---|");
     for (name, time, work) in [
         ("forward", forward, one_forward),
         ("forward and vjp: a gradient", with_vjp, one_forward + one_vjp),

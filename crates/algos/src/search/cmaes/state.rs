@@ -27,9 +27,9 @@ pub(super) struct CmaesState {
     pub(super) path_c: Vec<f64>,
     /// C, row-major: the lower triangle, zeros above. The diagonal alone if separable.
     pub(super) covariance: Vec<f64>,
-    /// Bᵀ of the last decomposition, row-major: each row an eigenvector. Empty if separable.
-    pub(super) axes: Vec<f64>,
-    /// D of the last decomposition: standard deviations along the axes.
+    /// L of the last decomposition, row-major: the lower triangle, zeros above. Empty if separable.
+    pub(super) factor: Vec<f64>,
+    /// Standard deviations, in units of σ: of the coordinates if separable, else about the shortest and the longest in any direction.
     pub(super) lengths: Vec<f64>,
     /// `run_generation` at the last decomposition.
     pub(super) decomposed_at: u64,
@@ -55,7 +55,6 @@ pub(super) struct Scored {
 impl CmaesState {
     /// Before the first generation, with the mean at the point `mean` of the unbounded space.
     pub(super) fn new(config: &CmaesConfig, start: Vec<f64>, mean: Vec<f64>, seed: u64) -> Self {
-        let n = mean.len();
         let mut state = Self {
             seed,
             start,
@@ -67,8 +66,8 @@ impl CmaesState {
             path_sigma: vec![],
             path_c: vec![],
             covariance: vec![],
-            axes: vec![],
-            lengths: vec![1.0; n],
+            factor: vec![],
+            lengths: vec![],
             decomposed_at: 0,
             best_scores: vec![],
             median_scores: vec![],
@@ -89,8 +88,8 @@ impl CmaesState {
         self.path_sigma = vec![0.0; n];
         self.path_c = vec![0.0; n];
         self.covariance = if config.separable { vec![1.0; n] } else { identity(n) };
-        self.axes = if config.separable { vec![] } else { identity(n) };
-        self.lengths = vec![1.0; n];
+        self.factor = if config.separable { vec![] } else { identity(n) };
+        self.lengths = vec![1.0; if config.separable { n } else { 2 }];
         self.decomposed_at = 0;
         self.best_scores.clear();
         self.median_scores.clear();
@@ -115,7 +114,7 @@ impl Persist for CmaesState {
         with.vector("path_sigma", &mut self.path_sigma)?;
         with.vector("path_c", &mut self.path_c)?;
         with.vector("covariance", &mut self.covariance)?;
-        with.vector("axes", &mut self.axes)?;
+        with.vector("factor", &mut self.factor)?;
         with.vector("lengths", &mut self.lengths)?;
         with.number("decomposed_at", &mut self.decomposed_at)?;
         if self.decomposed_at > self.run_generation {

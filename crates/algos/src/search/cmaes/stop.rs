@@ -5,7 +5,7 @@ use super::{CmaesConfig, CmaesState};
 /// Why a run has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// A tenth of a standard deviation along a principal axis no longer changes the mean.
+    /// A tenth of a standard deviation along an axis of the samples (a column of L) no longer changes the mean.
     NoEffectAxis,
     /// A fifth of a standard deviation in a coordinate no longer changes it.
     NoEffectCoord,
@@ -62,7 +62,7 @@ pub(super) fn record(state: &mut CmaesState, sorted: &[f64]) {
 }
 
 /// Whether the run has ended, after an update by a generation with these scores, the best first. `decomposed` is false
-/// where the covariance has no eigenvectors.
+/// where the covariance has no Cholesky factor.
 pub(super) fn test(state: &CmaesState, config: &CmaesConfig, sorted: &[f64], decomposed: bool) -> Option<Stop> {
     let n = state.mean.len();
     let deviation = |i| state.sigma * state.variance(i).sqrt();
@@ -93,10 +93,13 @@ pub(super) fn test(state: &CmaesState, config: &CmaesConfig, sorted: &[f64], dec
     }
     // One axis each generation, in turn.
     let k = (state.run_generation % n as u64) as usize;
-    let step = 0.1 * state.sigma * state.lengths[k];
     let unchanged = |i: usize| {
-        let along = if config.separable { f64::from(u8::from(i == k)) } else { state.axes[k * n + i] };
-        state.mean[i] + step * along == state.mean[i]
+        let along = match config.separable {
+            true if i == k => state.lengths[k],
+            true => 0.0,
+            false => state.factor[i * n + k],
+        };
+        state.mean[i] + 0.1 * state.sigma * along == state.mean[i]
     };
     if (0..n).all(unchanged) {
         return Some(Stop::NoEffectAxis);

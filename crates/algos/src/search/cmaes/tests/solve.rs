@@ -18,7 +18,7 @@ fn separable_solves_a_separable_ellipsoid_of_a_thousand() {
     let mut search = search(config, &vec![1.0; 1000]);
     let scaled = |x: &[f64]| x.iter().enumerate().map(|(i, v)| (1.0 + i as f64) * v * v).sum();
     assert!(evaluations(&mut search, scaled, 1e-2, 120_000).is_some());
-    assert_eq!((search.state.covariance.len(), search.state.axes.len()), (1000, 0));
+    assert_eq!((search.state.covariance.len(), search.state.factor.len()), (1000, 0));
 }
 
 #[test]

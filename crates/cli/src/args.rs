@@ -26,6 +26,15 @@ pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, Toleran
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
 pub(crate) use studies::{CompareArgs, ReproduceArgs};
 
+/// What the program says where nothing is asked of it.
+pub(crate) const GREETING: &str = "\
+hwasp: hardware as policy. It designs a robot's body and its controller together.
+
+  hwasp train mass-spring      ten springs and a motor, trained in seconds
+  hwasp init robot.xml         begin with a robot of your own (MJCF or URDF)
+  hwasp help                   all commands
+";
+
 const EXAMPLES: &str = "\
 Examples:
   hwasp list                                  what can be trained
@@ -42,10 +51,11 @@ stop (Ctrl-C, SIGTERM).";
 /// The law of a mechanism (springs, bars, tendons) is a differentiable part of the policy, and policy gradients train its
 /// physical parameters with the controller (Chen, He and Ciocarlie, "Hardware as Policy", CoRL 2020).
 #[derive(Debug, Parser)]
-#[command(name = "hwasp", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "hwasp", version, max_term_width = 100, after_help = EXAMPLES)]
 pub(crate) struct Args {
+    /// None greets.
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: Option<Command>,
     /// The form of remarks and errors, and of a run's train.log
     #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t = LogFormat::Text)]
     pub(crate) log_format: LogFormat,

@@ -29,7 +29,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use hwasp_experiment::Catalogue;
 
-use args::{Args, Command, LogFormat, LogLevel};
+use args::{Args, Command, GREETING, LogFormat, LogLevel};
 
 pub use caller::Caller;
 pub use commands::check::checked;
@@ -53,8 +53,13 @@ fn obeyed(catalogue: &Catalogue) -> u8 {
         Ok(args) => args,
         Err(answer) => return answered(&answer),
     };
-    log::begin(args.log_format, args.log_level, args.command.quiet());
-    match obey(&args.command, catalogue) {
+    let quiet = args.command.as_ref().is_some_and(Command::quiet);
+    log::begin(args.log_format, args.log_level, quiet);
+    let obeyed = match &args.command {
+        Some(command) => obey(command, catalogue),
+        None => output::print(GREETING).map_err(Failure::from),
+    };
+    match obeyed {
         Ok(()) => 0,
         Err(failure) => {
             tracing::error!("{}", failure.text());

@@ -30,8 +30,9 @@ fn help_of_every_command() {
 }
 
 #[test]
-fn without_arguments_the_help_is_shown_as_an_error() {
+fn without_arguments_it_greets() {
     let output = Sandbox::new("no-arguments").run("");
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("Usage: hwasp [OPTIONS] <COMMAND>"));
+    let greeting = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && greeting.starts_with("hwasp: hardware as policy."), "{greeting}");
+    assert_eq!(greeting.matches("\n  hwasp ").count(), 3);
 }

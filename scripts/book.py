@@ -11,6 +11,7 @@ mdBook does the rest (`cargo install mdbook`, version 0.5), and scripts/check_li
 """
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -88,7 +89,7 @@ def main():
         sys.exit(f"error: there is no program `{given.mdbook}`\nhint: `cargo install mdbook --version 0.5.4` builds it, or name one by --mdbook")
     # mdBook reads a path of its settings from the folder of book.toml, and an absolute one as it is.
     command = [given.mdbook, "build", ROOT / "docs", "--dest-dir", html]
-    subprocess.run(command, check=True, env={**__import__("os").environ, "MDBOOK_BOOK__SRC": str(staged)})
+    subprocess.run(command, check=True, env={**os.environ, "MDBOOK_BOOK__SRC": str(staged)})
     faults = list(in_pages(html))
     print("\n".join(faults) if faults else f"{html}/index.html: {len(pages)} pages, every link leads somewhere")
     sys.exit(bool(faults))

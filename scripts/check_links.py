@@ -16,10 +16,11 @@ from pathlib import Path
 from posixpath import dirname, normpath
 from urllib.parse import unquote
 
-# A fenced block, or code within a line: what stands there is no link.
-CODE = re.compile(r"^ *(```+|~~~+).*?^ *\1 *$|(?<!`)(`+)(?!`).+?(?<!`)\2(?!`)", re.M | re.S)
-# [text](target) and ![text](target "title"); the text may hold code, brackets and a picture of its own.
-LINK = re.compile(r"(!?)\[((?:[^\[\]]|!?\[[^\]]*\](?:\([^)]*\))?)*)\]\(<?([^)\s>]+)>?((?:\s+\"[^\"]*\")?)\)")
+FENCED = re.compile(r"^ *(```+|~~~+).*?^ *\1 *$", re.M | re.S)
+# Code within a line, too: what stands there is no link.
+CODE = re.compile(FENCED.pattern + r"|(?<!`)(`+)(?!`).+?(?<!`)\2(?!`)", re.M | re.S)
+# [text](target) and ![text](target); the text may hold brackets.
+LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^ {0,3}#{1,6} +(.+?)(?: +#+)? *$", re.M)
 ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:|//", re.I)
 
@@ -30,21 +31,15 @@ def without_code(text):
 
 
 def links(text):
-    """All links outside of code: picture or not, start and end of text and target."""
-    blank = without_code(text)
-    for found in LINK.finditer(blank):
+    """All links outside of code: whether it is a picture, and the spans of its text, its target and the whole."""
+    for found in LINK.finditer(without_code(text)):
         yield found.group(1) == "!", found.span(2), found.span(3), found.span()
-        # A picture that is a link.
-        inner = re.match(r"!\[[^\]]*\]\(([^)\s]+)\)", found.group(2))
-        if inner:
-            start = found.start(2)
-            yield True, (start, start), (start + inner.start(1), start + inner.end(1)), (start, start + inner.end())
 
 
 def anchors(text):
     """What may stand behind the # of a link to a Markdown file, as code hosts and mdBook make it of headings."""
-    found, seen = set(re.findall(r"<[^>]+ (?:id|name)=\"([^\"]+)\"", text)), {}
-    for heading in HEADING.findall(re.sub(r"^ *(```+|~~~+).*?^ *\1 *$", "", text, flags=re.M | re.S)):
+    found, seen = set(), {}
+    for heading in HEADING.findall(FENCED.sub("", text)):
         plain = LINK.sub(r"\2", heading)
         slug = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
         count = seen.get(slug, 0)

@@ -30,17 +30,13 @@ def target(page, link):
     return normpath(f"{dirname(page)}/{link.partition('#')[0]}".lstrip("/"))
 
 
-def is_elsewhere(link):
-    return bool(ELSEWHERE.match(link)) or link.startswith("#")
-
-
 def gathered(page, text, pages, repository):
     """The text of a page with its outward links replaced, and the pictures that it shows."""
     pictures = []
     # From the end, so that what was found before stays where it is.
     for picture, (left, right), (start, end), (first, last) in sorted(links(text), key=lambda link: link[2], reverse=True):
         link = text[start:end]
-        if is_elsewhere(link):
+        if ELSEWHERE.match(link) or link.startswith("#"):
             continue
         path = target(page, link)
         if picture:
@@ -50,9 +46,10 @@ def gathered(page, text, pages, repository):
         elif repository:
             text = f"{text[:start]}{repository.rstrip('/')}/{path}{text[end:]}"
         else:
-            said = text[left:right]
-            code = f"`{path}`"
-            text = text[:first] + (code if said.strip("`").rstrip("/") in path else f"{said} ({code})") + text[last:]
+            said, code = text[left:right], f"`{path}`"
+            # A text that is the path, or its end, needs no other words.
+            words = code if said.strip("`").rstrip("/") in path else f"{said} ({code})"
+            text = f"{text[:first]}{words}{text[last:]}"
     return text, pictures
 
 

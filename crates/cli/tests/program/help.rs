@@ -34,7 +34,7 @@ fn every_command_is_in_the_reference() {
         let help = String::from_utf8(output.stdout).unwrap();
         let lines = help.lines().map(str::trim_end).fold(String::new(), |text, line| text + line + "\n");
         write!(page, "\n## {command}\n\n```text\n{}\n```\n", lines.trim_end()).unwrap();
-        waiting.extend(subcommands(&help).rev().map(|name| format!("{command} {name}")));
+        waiting.extend(subcommands(&help).into_iter().rev().map(|name| format!("{command} {name}")));
     }
     // Without the engine there are fewer.
     if !cfg!(feature = "mujoco") {
@@ -55,14 +55,12 @@ fn every_command_is_in_the_reference() {
 }
 
 /// The commands that a help text names, but for `help`.
-fn subcommands(help: &str) -> impl DoubleEndedIterator<Item = &str> {
+fn subcommands(help: &str) -> Vec<&str> {
     let list = help.split_once("\nCommands:\n").map_or("", |(_, list)| list.split("\n\n").next().unwrap_or_default());
-    let names: Vec<_> = list
-        .lines()
+    list.lines()
         .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' '))?.split(' ').next())
         .filter(|&name| name != "help")
-        .collect();
-    names.into_iter()
+        .collect()
 }
 
 #[test]

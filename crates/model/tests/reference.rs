@@ -8,7 +8,7 @@ use std::path::Path;
 /// `HWASP_WRITE_DOCS=1 cargo test -p hwasp-model --test reference` writes both anew.
 #[test]
 fn names_functions_and_fields_are_in_the_document() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own_robot.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formulas.md");
     let there = fs::read_to_string(&path).unwrap();
     let mut wanted = there.clone();
     for (what, text) in [("names", hwasp_model::reference()), ("fields", hwasp_model::settable())] {
@@ -24,6 +24,6 @@ fn names_functions_and_fields_are_in_the_document() {
     }
     assert!(
         there == wanted,
-        "docs/own_robot.md is old: HWASP_WRITE_DOCS=1 cargo test -p hwasp-model --test reference renews it"
+        "docs/formulas.md is old: HWASP_WRITE_DOCS=1 cargo test -p hwasp-model --test reference renews it"
     );
 }

@@ -1,12 +1,21 @@
-//! Help texts.
+//! Help texts, and the reference of the command line in docs/command_line.md.
+//!
+//! `HWASP_WRITE_DOCS=1 cargo test -p hwasp-cli --test program reference` writes the reference anew.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
 
 use crate::sandbox::Sandbox;
 
-#[test]
-fn help_of_the_program() {
-    let sandbox = Sandbox::new("help");
-    insta::assert_snapshot!(sandbox.transcript(&["--help"]));
-}
+const INTRODUCTION: &str = "\
+# The command line
+
+    hwasp help train
+
+Every command says what it does and takes. This page is what they say, written by the tests. In a checkout
+`cargo run --release -- train …` builds the program where needed and runs it.
+";
 
 #[test]
 fn the_version() {
@@ -15,18 +24,43 @@ fn the_version() {
 }
 
 #[test]
-fn help_of_every_command() {
-    let sandbox = Sandbox::new("help-commands");
-    let commands = "train eval design export parts tolerances play plot report compare reproduce check schema list laws graph init";
-    let deploy = ["init", "check", "calibrate", "run", "replay", "identify", "trials"]
-        .map(|command| format!("deploy {command} --help"));
-    let lines = commands
-        .split(' ')
-        .map(|command| format!("{command} --help"))
-        .chain(["deploy --help".to_owned()])
-        .chain(deploy);
-    let lines: Vec<String> = lines.collect();
-    insta::assert_snapshot!(sandbox.transcript(&lines.iter().map(String::as_str).collect::<Vec<_>>()));
+fn every_command_is_in_the_reference() {
+    let sandbox = Sandbox::new("help");
+    let mut page = INTRODUCTION.to_owned();
+    let mut waiting = vec!["hwasp".to_owned()];
+    while let Some(command) = waiting.pop() {
+        let output = sandbox.run(&command.replacen("hwasp", "help", 1));
+        assert!(output.status.success(), "{command}");
+        let help = String::from_utf8(output.stdout).unwrap();
+        let lines = help.lines().map(str::trim_end).fold(String::new(), |text, line| text + line + "\n");
+        write!(page, "\n## {command}\n\n```text\n{}\n```\n", lines.trim_end()).unwrap();
+        waiting.extend(subcommands(&help).into_iter().rev().map(|name| format!("{command} {name}")));
+    }
+    // Without the engine there are fewer.
+    if !cfg!(feature = "mujoco") {
+        return;
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/command_line.md");
+    if std::env::var_os("HWASP_WRITE_DOCS").is_some() {
+        fs::write(path, page).unwrap();
+        return;
+    }
+    let there = fs::read_to_string(path).unwrap_or_default();
+    let differs = (1..).zip(page.lines().zip(there.lines().chain([""]))).find(|(_, (new, old))| new != old);
+    assert!(
+        page == there,
+        "docs/command_line.md is not what the program says now; the first difference, line, now and there: {differs:?}\n\
+         hint: `HWASP_WRITE_DOCS=1 cargo test -p hwasp-cli --test program reference` renews it; read the difference"
+    );
+}
+
+/// The commands that a help text names, but for `help`.
+fn subcommands(help: &str) -> Vec<&str> {
+    let list = help.split_once("\nCommands:\n").map_or("", |(_, list)| list.split("\n\n").next().unwrap_or_default());
+    list.lines()
+        .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' '))?.split(' ').next())
+        .filter(|&name| name != "help")
+        .collect()
 }
 
 #[test]

@@ -23,6 +23,8 @@ use crate::sandbox::Sandbox;
 const INTRODUCTION: &str = "\
 # Errors
 
+    hwasp check my.toml      # all that is wrong with an experiment, at once
+
 What the program says of inputs that are wrong, {count} of them: search this page for the message you got. The exit status
 is 0 if all went well, 1 if something failed on the way, 2 if what was asked for is wrong (nothing was begun then), 130 if
 the program was asked to stop. Messages go to standard error; `os error` numbers are those of Linux. The page is written

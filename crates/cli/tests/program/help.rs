@@ -1,4 +1,4 @@
-//! Help texts, and the reference of the command line in docs/command_line.md.
+//! Help texts, and the reference of the command line in `docs/command_line.md`.
 //!
 //! `HWASP_WRITE_DOCS=1 cargo test -p hwasp-cli --test program reference` writes the reference anew.
 

@@ -19,7 +19,7 @@ fn captions_stand_in_the_four_corners_and_nowhere_else() {
     let picture = plain(320, 240, [90, 120, 150]);
     let caption = |success| Caption {
         object: "sphere · 310 g".into(),
-        success,
+        success: Some(success),
         time: "1.25 s · step 125/500".into(),
         episode: "seed 7 · episode 3".into(),
     };
@@ -43,7 +43,7 @@ fn captions_stand_in_the_four_corners_and_nowhere_else() {
 fn a_sheet_has_a_row_for_each_episode() {
     let row = |red: u8, success| Row {
         lines: vec!["episode 0".into(), "sphere".into()],
-        success,
+        success: Some(success),
         cells: (0..3_u8).map(|i| (plain(40, 30, [red, 0, 10 * i]), "start".to_owned())).collect(),
     };
     let png = sheet("z-grasp", &[row(200, true), row(100, false)]).unwrap();
@@ -144,16 +144,17 @@ mod grasps {
     #[allow(clippy::print_stderr)] // says what is left out
     fn pictures_are_written() {
         use hwasp_mujoco::engine::PictureError;
-        use hwasp_report::play::{PlayError, play};
+        use hwasp_report::play::{Format, PlayError, render};
 
         let run = trained();
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("play");
         let _ = std::fs::remove_dir_all(&out);
         let mut told = Vec::new();
-        let played = play(
+        let played = render(
             run.assembly(),
             &run.params().unwrap(),
             &options(0, 1, false),
+            Format::Gif,
             ("a trained hand", &out),
             &mut |played| told.push(played.clone()),
         );

@@ -176,3 +176,6 @@ fn pose(solid: &Solid) -> Vec<f32> {
     let length = products.iter().map(|part| part * part).sum::<f64>().sqrt();
     solid.at.into_iter().chain(products.map(|part| part / length)).map(|part| part as f32).collect()
 }
+
+#[cfg(test)]
+mod tests;

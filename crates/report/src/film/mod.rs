@@ -6,13 +6,15 @@ mod order;
 mod outline;
 mod reel;
 mod set;
+mod sketch;
 
 use hwasp_scene::{LOOKED_THROUGH, Moment, Studio, Take};
 use hwasp_training::{Assembly, EvaluateError, World};
 use maud::{Markup, PreEscaped, html};
 
 use self::reel::{Frame, Reel};
-use self::set::Set;
+pub(crate) use self::set::Set;
+pub(crate) use self::sketch::sketch;
 use crate::words::{decimal, decimals};
 
 /// Stills of an episode.
@@ -82,7 +84,7 @@ fn length(metres: f64) -> String {
 }
 
 /// How it ended, for tasks that know success: a word and its class.
-fn verdict(take: &Take) -> Option<&'static str> {
+pub(crate) fn verdict(take: &Take) -> Option<&'static str> {
     take.result.outcome.as_ref().map(|outcome| if outcome.success { "success" } else { "failure" })
 }
 
@@ -105,7 +107,7 @@ fn told_of_take(take: &Take) -> String {
 }
 
 /// What is to be known of a moment.
-fn told_of_moment(moment: &Moment) -> String {
+pub(crate) fn told_of_moment(moment: &Moment) -> String {
     if moment.sight.told.is_empty() {
         format!("return {}", decimal(moment.worth, decimals(moment.worth)))
     } else {
@@ -165,7 +167,7 @@ fn stills(set: &Set, (number, take): (usize, &Take)) -> Markup {
 
 /// Moments for stills, with what happens there: start, the first of everything of note, end; evenly spread ones where there are
 /// fewer.
-fn chosen(take: &Take) -> Vec<(usize, &str)> {
+pub(crate) fn chosen(take: &Take) -> Vec<(usize, &str)> {
     let last = take.moments.len() - 1;
     let mut chosen = vec![(0, "start")];
     chosen.extend((last > 0).then_some((last, "end")));
@@ -191,10 +193,21 @@ fn chosen(take: &Take) -> Vec<(usize, &str)> {
 }
 
 /// A picture with its name; `id` is its own. That of a `film` has all its slots, numbered, for the paths to come.
-fn drawing(set: &Set, (number, take, i): (usize, &Take, usize), film: bool, [id, title, about]: [&str; 3]) -> Markup {
+fn drawing(set: &Set, take: (usize, &Take, usize), film: bool, [id, title, about]: [&str; 3]) -> Markup {
+    let [width, height] = set.size;
+    html! {
+        svg.sketch viewBox={ "0 0 " (width) " " (height) } role="img" aria-labelledby={ (id) "-t " (id) "-d" } {
+            title id={ (id) "-t" } { (title) }
+            desc id={ (id) "-d" } { (about) }
+            (shapes(set, take, film))
+        }
+    }
+}
+
+/// What is drawn of a moment of an episode.
+fn shapes(set: &Set, (number, take, i): (usize, &Take, usize), film: bool) -> Markup {
     let sight = &take.moments[i].sight;
     let frame = Frame::new(set, (number, i), sight);
-    let [width, height] = set.size;
     let [left, top] = frame.corner.map(|at| -at);
     let solids = sight.solids.len();
     let colour = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
@@ -209,16 +222,12 @@ fn drawing(set: &Set, (number, take, i): (usize, &Take, usize), film: bool, [id,
         }
     };
     html! {
-        svg.sketch viewBox={ "0 0 " (width) " " (height) } role="img" aria-labelledby={ (id) "-t " (id) "-d" } {
-            title id={ (id) "-t" } { (title) }
-            desc id={ (id) "-d" } { (about) }
-            g.camera transform={ "translate(" (left) " " (top) ")" } {
-                @for [outline, lines] in &set.ground {
-                    @if !outline.is_empty() { path.floor d=(outline) {} }
-                    path.grid d=(lines) {}
-                }
-                g.solids { @for &i in &frame.order { (slot(i)) } }
+        g.camera transform={ "translate(" (left) " " (top) ")" } {
+            @for [outline, lines] in &set.ground {
+                @if !outline.is_empty() { path.floor d=(outline) {} }
+                path.grid d=(lines) {}
             }
+            g.solids { @for &i in &frame.order { (slot(i)) } }
         }
     }
 }

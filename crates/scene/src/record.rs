@@ -96,7 +96,8 @@ impl<'a> Studio<'a> {
         let world = World::described(self.world.law.clone(), self.world.env.clone(), Arc::new(filmed));
         let sampler = sampler(self.assembly, &world, self.design)?;
         let controller = self.assembly.policy.controller_params(self.params);
-        let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, index..index + 1), 1.0)?;
+        let discount = self.assembly.experiment().discount();
+        let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, index..index + 1), discount)?;
         let moments = std::mem::take(&mut lock(&kept).moments);
         let result = results.into_iter().next().and_then(Result::ok);
         Ok(result.filter(|_| !moments.is_empty()).map(|result| Take {

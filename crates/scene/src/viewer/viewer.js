@@ -92,7 +92,7 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
     }
     [...choices.children].forEach((choice, i) => choice.setAttribute("aria-pressed", String(i === chosen())));
     about.textContent = [
-      `Episode ${one.index}`, one.kind, one.about, verdict(one), `return ${words(one.return)} (discounted ${words(one.discounted_return)})`,
+      `Episode ${one.index}`, one.kind, one.about, verdict(one), `return ${words(one.return)}`, one.discounted_return !== one.return && `discounted ${words(one.discounted_return)}`,
       `${one.steps} steps`, one.solids.some((solid) => solid.ground) && `squares of ${length(squares(scene.shot))} on the ground`,
     ].filter(Boolean).join(", ") + ".";
     slider.max = Math.ceil(100 * end()) / 100;

@@ -84,8 +84,8 @@ fn length(metres: f64) -> String {
 }
 
 /// How it ended, for tasks that know success: a word and its class.
-pub(crate) fn verdict(take: &Take) -> Option<&'static str> {
-    take.result.outcome.as_ref().map(|outcome| if outcome.success { "success" } else { "failure" })
+fn verdict(take: &Take) -> Option<&'static str> {
+    take.success().map(|success| if success { "success" } else { "failure" })
 }
 
 /// What an episode is called.
@@ -119,8 +119,6 @@ pub(crate) fn told_of_moment(moment: &Moment) -> String {
 fn player(set: &Set, takes: &[Take], each: usize) -> Markup {
     let reels: Vec<Reel> = takes.iter().enumerate().map(|take| Reel::new(set, take, each)).collect();
     let data = serde_json::to_string(&reels).expect("texts and finite numbers can be written as JSON");
-    // Nothing in it ends the script.
-    let data = data.replace('<', "\\u003c");
     let names = ["player", "Episodes, drawn as a film", "The moments beside it show the same as stills."];
     html! {
         figure.player hidden {
@@ -137,7 +135,7 @@ fn player(set: &Set, takes: &[Take], each: usize) -> Markup {
                 label { span.hidden { "Time" } input type="range" min="0" max="0" value="0" step="1"; }
                 span.clock { "0.00 s" }
             }
-            script type="application/json" { (PreEscaped(data)) }
+            script type="application/json" { (PreEscaped(hwasp_scene::data(&data))) }
         }
     }
 }

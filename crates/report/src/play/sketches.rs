@@ -23,8 +23,7 @@ pub(super) fn sketches<'a>(
             Ok(canvas.picture())
         };
         let time = |i: usize| take.time_step * take.moments[i].step as f64;
-        let outcome = take.result.outcome.as_ref();
-        let (kind, success) = (outcome.map_or("", |outcome| &outcome.kind), outcome.map(|outcome| outcome.success));
+        let (kind, success) = (take.kind().unwrap_or_default(), take.success());
         let about = take.moments.first().map_or("", |moment| &moment.sight.about);
         let object = [kind, about].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" · ");
         let caption = |i: usize| Caption {

@@ -10,7 +10,11 @@ const linear = (colour) => colour.map((part) => (part / 255) ** 2);
 
 // A scene with its numbers read, and where things are.
 const read = (scene) => {
-  const surfaces = scene.surfaces.map((s) => ({ points: decode(s.points, Float32Array), faces: decode(s.faces, Uint16Array) }));
+  const surfaces = scene.surfaces.map((one) => {
+    const points = decode(one.points, Float32Array), half = [0, 0, 0];
+    points.forEach((part, i) => (half[i % 3] = Math.max(half[i % 3], Math.abs(part))));
+    return { points, half, faces: decode(one.faces, Uint16Array) };
+  });
   const takes = scene.takes.map((take) => ({
     ...take,
     end: take.times.at(-1) ?? 0,

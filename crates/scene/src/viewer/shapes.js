@@ -41,16 +41,16 @@ const box = (sides) => {
 // Edges that turn by less than 45 degrees are smooth.
 const surface = ({ points, faces }) => {
   const at = (i) => points.subarray(3 * i, 3 * i + 3);
-  const normals = [], around = new Map(), out = [];
+  const normals = [], around = Array.from({ length: points.length / 3 }, () => []), out = [];
   for (let f = 0; f < faces.length; f += 3) {
     const [a, b, c] = [at(faces[f]), at(faces[f + 1]), at(faces[f + 2])];
     normals.push(cross(add(b, a, -1), add(c, a, -1)));
-    for (let k = 0; k < 3; k++) around.set(faces[f + k], [...(around.get(faces[f + k]) ?? []), f / 3]);
+    for (let k = 0; k < 3; k++) around[faces[f + k]].push(f / 3);
   }
   const units = normals.map(unit);
   faces.forEach((point, i) => {
     const own = units[Math.floor(i / 3)];
-    const near = around.get(point).filter((f) => dot(units[f], own) > 0.7);
+    const near = around[point].filter((f) => dot(units[f], own) > 0.7);
     out.push(...at(point), 0, ...unit(near.reduce((sum, f) => add(sum, normals[f]), [0, 0, 0])));
   });
   return [out, [...faces.keys()]];

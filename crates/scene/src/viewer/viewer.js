@@ -12,6 +12,7 @@
 // called with (seconds, take) after every picture.
 
 const REST = 1.2; // seconds that the last moment is shown
+const SLOW = 45; // ms from picture to picture, above which they become coarser while they move
 
 const make = (name, attributes = {}, ...inside) => {
   const made = document.createElement(name);
@@ -26,6 +27,7 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
   // What viewers beside each other share. Zoom and pan are relative to the picture that fits.
   const state = sync?.state ?? { take: 0, time: 0, playing: false, began: undefined, follow: true, members: new Set(), camera: undefined };
   let scene = read(first), gpu, asked = 0, lost = false, seen = true, dead = false;
+  let quality = 1, pace = 0, last = 0;
 
   const canvas = make("canvas", { tabindex: 0, role: "application" });
   const choices = make("div", { class: "hw-row", role: "group", "aria-label": "Which episode" });
@@ -52,7 +54,7 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
   const distance = () => Math.max(...members("fitted").map((own) => own(canvas.clientWidth / canvas.clientHeight || 1))) * state.camera.zoom;
 
   const show = () => {
-    const scale = Math.min(devicePixelRatio, 2);
+    const scale = Math.min(devicePixelRatio, 2) * (state.playing ? quality : 1);
     const size = [canvas.clientWidth, canvas.clientHeight].map((side) => Math.max(Math.round(side * scale), 1));
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     gpu ??= stage(gl, scene);
@@ -104,6 +106,10 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
   const tick = (now) => {
     asked = 0;
     if (dead || !take()) return;
+    // The mean of some pictures; one that was long ago does not count.
+    if (now - last < 1000) pace += 0.1 * (now - last - pace);
+    last = state.playing ? now : 0;
+    if (pace > SLOW && quality > 0.5) [quality, pace] = [0.75 * quality, 0];
     if (state.playing) {
       state.began ??= now - 1000 * state.time;
       if (now - state.began > 1000 * (end() + REST)) state.began = now;

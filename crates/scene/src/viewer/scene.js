@@ -51,7 +51,7 @@ const bounds = (solid, surfaces, k) => {
   const pose = moment(solid.poses, 7, k);
   let size = [...moment(solid.sizes, 3, k)];
   if (solid.form === "capsule") size[2] += size[0];
-  if (solid.form === "mesh") size = surfaces[solid.surface].points.reduce((most, x, i) => ((most[i % 3] = Math.max(most[i % 3], Math.abs(x))), most), [0, 0, 0]);
+  if (solid.form === "mesh") size = surfaces[solid.surface].half;
   const m = matrix(pose);
   return [[...pose.subarray(0, 3)], [0, 1, 2].map((i) => Math.abs(m[i]) * size[0] + Math.abs(m[i + 4]) * size[1] + Math.abs(m[i + 8]) * size[2])];
 };

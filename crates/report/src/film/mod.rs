@@ -71,7 +71,7 @@ fn told_of_all(takes: &[Take], seed: u64) -> String {
     let which = match takes {
         [one] => format!("Held-out episode {}", one.index),
         [best, worst] if best.name == "best" && worst.name == "worst" => {
-            format!("The best and the worst, by return, of the first {} held-out episodes", LOOKED_THROUGH)
+            format!("The best and the worst, by return, of the first {LOOKED_THROUGH} held-out episodes")
         }
         [first, ..] if !first.name.is_empty() => "The first held-out episode of each kind".to_owned(),
         _ => "Held-out episodes".to_owned(),

@@ -1,0 +1,33 @@
+//! Episodes in three dimensions: filmed ([`Studio`]), as data ([`Scene`]), and as a page that shows them ([`page`]).
+//!
+//! Whatever [shows itself](hwasp_core::Environment::look) can be filmed. The page draws with a small WebGL 2 program of its own
+//! ([`VIEWER_JS`]) and loads nothing.
+
+#![forbid(unsafe_code)]
+
+mod numbers;
+mod page;
+mod record;
+mod scene;
+mod surface;
+
+pub use page::{data, page, source_hash};
+pub use record::{LOOKED_THROUGH, Moment, Studio, Take};
+pub use scene::Scene;
+
+/// The viewer: a classic script that defines `hwaspViewer(element, scene, options)`, as `viewer/viewer.js` says.
+pub const VIEWER_JS: &str = concat!(
+    "\"use strict\";\n{\n",
+    include_str!("viewer/numbers.js"),
+    include_str!("viewer/shapes.js"),
+    include_str!("viewer/scene.js"),
+    include_str!("viewer/shot.js"),
+    include_str!("viewer/shaders.js"),
+    include_str!("viewer/stage.js"),
+    include_str!("viewer/draw.js"),
+    include_str!("viewer/camera.js"),
+    include_str!("viewer/viewer.js"),
+    "}\n"
+);
+/// How the viewer looks; colours are variables.
+pub const VIEWER_CSS: &str = include_str!("viewer/viewer.css");

@@ -120,13 +120,13 @@ pub(super) fn cholesky(c: &[f64], n: usize) -> Option<Vec<f64>> {
             let (c, d) = rest.split_at_mut(n);
             vectorised(
                 #[inline(always)]
-                || solve(above, n, [a, b, c, d]),
+                || solve(above, n, &mut [a, b, c, d]),
             );
         } else {
             for row in block.chunks_exact_mut(n) {
                 vectorised(
                     #[inline(always)]
-                    || solve(above, n, [row]),
+                    || solve(above, n, &mut [row]),
                 );
             }
         }
@@ -152,7 +152,7 @@ pub(super) fn cholesky(c: &[f64], n: usize) -> Option<Vec<f64>> {
 
 /// The first columns of `rows`, by forward substitution with the finished rows above them.
 #[inline(always)]
-fn solve<const K: usize>(above: &[f64], n: usize, rows: [&mut [f64]; K]) {
+fn solve<const K: usize>(above: &[f64], n: usize, rows: &mut [&mut [f64]; K]) {
     for (j, finished) in above.chunks_exact(n).enumerate() {
         let known: [f64; K] = dots(&finished[..j], array::from_fn(|k| &rows[k][..j]));
         for k in 0..K {
@@ -178,7 +178,9 @@ pub(super) fn extremes(lower: &[f64], n: usize) -> [f64; 2] {
     // The direction is scaled to length 1 in between; the length after half a step is a deviation.
     let scaled = |v: &mut [f64]| {
         let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-        v.iter_mut().for_each(|v| *v /= length);
+        for part in v.iter_mut() {
+            *part /= length;
+        }
         length
     };
     let (mut wide, mut longest) = (unit(at(|a, b| a > b)), 0.0);

@@ -13,6 +13,7 @@ mod executor;
 pub mod gaussian;
 mod hardware;
 mod law;
+mod mesh;
 mod moments;
 mod placement;
 mod policy;
@@ -31,6 +32,7 @@ pub use environment::{
 pub use executor::{Executor, Serial, Threads};
 pub use hardware::{Hardware, Ports};
 pub use law::{Law, LawError};
+pub use mesh::Mesh;
 pub use moments::Moments;
 pub use placement::{ActionDecoder, Placement, PlacementError};
 pub use policy::{

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::mesh::Mesh;
+
 /// One moment of an episode as it looks. Solids and cords are the same ones, in the same order, at every moment of it. SI; z is
 /// up.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,8 +62,8 @@ pub enum Form {
     },
     /// Half the edges.
     Box([f64; 3]),
-    /// The convex hull of points.
-    Hull(Arc<[[f64; 3]]>),
+    /// Triangles.
+    Mesh(Arc<Mesh>),
 }
 
 /// A cord.

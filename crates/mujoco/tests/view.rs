@@ -27,7 +27,7 @@ fn every_shape_is_seen_as_it_is() {
         </worldbody></mujoco>"#,
     );
     let forms: Vec<&Form> = seen.solids.iter().map(|solid| &solid.form).collect();
-    let [plane, Form::Field(hills), sphere, ellipsoid, cuboid, cylinder, capsule, Form::Hull(dart)] = forms[..] else {
+    let [plane, Form::Field(hills), sphere, ellipsoid, cuboid, cylinder, capsule, Form::Mesh(dart)] = forms[..] else {
         panic!("{forms:?}")
     };
     assert_eq!(plane, &Form::Plane([3.0, 0.0]));
@@ -38,8 +38,8 @@ fn every_shape_is_seen_as_it_is() {
     assert_eq!(cuboid, &Form::Box([0.1, 0.2, 0.3]));
     assert_eq!(cylinder, &Form::Cylinder { radius: 0.1, half_length: 0.4 });
     assert_eq!(capsule, &Form::Capsule { radius: 0.1, half_length: 0.4 });
-    // The corners, without the point inside.
-    assert_eq!(dart.len(), 4);
+    // The corners, without the point inside, and the faces between them.
+    assert_eq!((dart.corners().len(), dart.faces().len()), (4, 4));
     let paints: Vec<([u8; 3], f32, bool)> = seen.solids.iter().map(|s| (s.colour, s.opacity, s.fixed)).collect();
     assert_eq!(paints[0], ([128; 3], 1.0, true));
     assert_eq!(paints[2], ([128; 3], 1.0, false));

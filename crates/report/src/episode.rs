@@ -7,7 +7,7 @@ use hwasp_training::{Assembly, EvaluateError, World, held_out, sampler};
 use maud::{Markup, html};
 
 use crate::figure::{gallery, picture};
-use crate::film::{Request, film};
+use crate::film::{Request, film, takes};
 use crate::page::Section;
 use crate::run::Run;
 use crate::words::sentence;
@@ -42,10 +42,9 @@ fn shown(run: &Run, assembly: &Assembly, params: &[f32]) -> Markup {
         design: &assembly.built(params),
         seed,
         episodes: Vec::new(),
-        most_bytes: MOST_BYTES,
     };
-    let drawn = match film(&request) {
-        Ok(film) => film,
+    let drawn = match takes(&request) {
+        Ok(takes) => film(&takes, seed, MOST_BYTES),
         Err(error) => return failed(&error),
     };
     html! {

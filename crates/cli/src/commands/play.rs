@@ -35,7 +35,7 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
         title.push_str(under.trim().trim_end_matches(':'));
         output::print(&under)?;
     }
-    let page = play::page(saved.assembly(), &params, &options, &title).map_err(|error| match error {
+    let takes = play::record(saved.assembly(), &params, &options).map_err(|error| match error {
         error @ PlayError::Unseen { .. } => {
             Failure::input(error).hint("write the method `look` of its task, as docs/own_mechanism.md shows")
         }
@@ -43,10 +43,16 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
         error => error.into(),
     })?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join("play"));
-    let path = out.join("film.html");
-    let written = fs::create_dir_all(&out).and_then(|()| fs::write(&path, page));
-    written.map_err(|source| PlayError::Write { path: path.clone(), source })?;
-    output::print(&format!("  {}\n", path.display()))?;
+    let pages = [
+        ("scene.html", play::scene_page(&takes, &title)),
+        ("film.html", play::film_page(saved.assembly(), &takes, options.seed, &title)),
+    ];
+    for (name, page) in pages {
+        let path = out.join(name);
+        let written = fs::create_dir_all(&out).and_then(|()| fs::write(&path, page));
+        written.map_err(|source| PlayError::Write { path: path.clone(), source })?;
+        output::print(&format!("  {}\n", path.display()))?;
+    }
     // What grasps is rendered as well.
     if play::check(saved.assembly()).is_ok() { draw(&saved, &params, &options, (&title, &out)) } else { Ok(()) }
 }

@@ -1,9 +1,6 @@
 //! What is seen of a model: [`View`].
 
-use std::f64::consts::PI;
-use std::sync::Arc;
-
-use hwasp_core::{Cord, Form, Sight, Solid};
+use hwasp_core::{Cord, Form, Mesh, Sight, Solid};
 use mujoco_rs::prelude::{MjModel, MjtGeomBase};
 
 use super::Simulation;
@@ -12,8 +9,6 @@ use super::Simulation;
 const SEEN_GROUPS: std::ops::RangeInclusive<i32> = 0..=2;
 /// The most solids that are shown: the largest ones.
 const MOST_SOLIDS: usize = 150;
-/// Directions in which the farthest points of a mesh are kept.
-const DIRECTIONS: usize = 64;
 /// The most rows and columns of points of a height field.
 const MOST_ROWS: usize = 24;
 /// What the engine gives a geom for which no colour was said.
@@ -141,7 +136,7 @@ fn form(model: &MjModel, geom: usize) -> Option<Form> {
         MjtGeomBase::mjGEOM_ELLIPSOID => Form::Ellipsoid([x, y, z]),
         MjtGeomBase::mjGEOM_CYLINDER => Form::Cylinder { radius: x, half_length: y },
         MjtGeomBase::mjGEOM_BOX => Form::Box([x, y, z]),
-        MjtGeomBase::mjGEOM_MESH | MjtGeomBase::mjGEOM_SDF => hull(model, data?),
+        MjtGeomBase::mjGEOM_MESH | MjtGeomBase::mjGEOM_SDF => mesh(model, data?),
     })
 }
 
@@ -162,21 +157,12 @@ fn field(model: &MjModel, field: usize) -> Form {
     Form::Field(some(rows).map(|row| some(columns).map(|column| point(row, column)).collect()).collect())
 }
 
-/// The points of a mesh that are farthest out in directions spread evenly over a sphere.
-fn hull(model: &MjModel, mesh: usize) -> Form {
-    let first = model.mesh_vertadr()[mesh].max(0) as usize;
-    let points = &model.mesh_vert()[first..][..model.mesh_vertnum()[mesh].max(0) as usize];
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    let mut kept: Vec<usize> = Vec::new();
-    for k in 0..DIRECTIONS {
-        let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
-        let (sin, cos) = (golden * k as f64).sin_cos();
-        let [x, y, z] = [cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z].map(|part| part as f32);
-        let out = |i: &usize| x * points[*i][0] + y * points[*i][1] + z * points[*i][2];
-        kept.extend((0..points.len()).max_by(|a, b| out(a).total_cmp(&out(b))));
-    }
-    kept.sort_unstable();
-    kept.dedup();
-    let corners: Arc<[[f64; 3]]> = kept.into_iter().map(|i| points[i].map(f64::from)).collect();
-    Form::Hull(corners)
+/// The triangles of a mesh.
+fn mesh(model: &MjModel, mesh: usize) -> Form {
+    let part = |first: i32, count: i32| first.max(0) as usize..(first.max(0) + count.max(0)) as usize;
+    let points = &model.mesh_vert()[part(model.mesh_vertadr()[mesh], model.mesh_vertnum()[mesh])];
+    let faces = &model.mesh_face()[part(model.mesh_faceadr()[mesh], model.mesh_facenum()[mesh])];
+    let points = points.iter().map(|point| point.map(f64::from)).collect();
+    let faces = faces.iter().map(|face| face.map(|point| point.max(0) as u32)).collect();
+    Form::Mesh(Mesh::new(points, faces).into())
 }

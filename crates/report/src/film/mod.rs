@@ -4,14 +4,13 @@
 mod eye;
 mod order;
 mod outline;
-mod record;
 mod reel;
 mod set;
 
+use hwasp_scene::{LOOKED_THROUGH, Moment, Studio, Take};
 use hwasp_training::{Assembly, EvaluateError, World};
 use maud::{Markup, PreEscaped, html};
 
-use self::record::{Studio, Take};
 use self::reel::{Frame, Reel};
 use self::set::Set;
 use crate::words::{decimal, decimals};
@@ -19,7 +18,7 @@ use crate::words::{decimal, decimals};
 /// Stills of an episode.
 const STILLS: usize = 6;
 
-/// Which episodes a film shows, and where.
+/// Which episodes are filmed, and where.
 pub(crate) struct Request<'a> {
     pub(crate) assembly: &'a Assembly,
     pub(crate) params: &'a [f32],
@@ -30,15 +29,13 @@ pub(crate) struct Request<'a> {
     pub(crate) seed: u64,
     /// The indices of the episodes; the film chooses where there are none.
     pub(crate) episodes: Vec<u64>,
-    /// Bytes that all films take together, at most.
-    pub(crate) most_bytes: usize,
 }
 
-/// The film; none where nothing is to be seen of the world.
+/// Films the episodes; there are none where nothing is to be seen of the world.
 ///
 /// # Errors
 /// Where no episode can be run.
-pub(crate) fn film(request: &Request<'_>) -> Result<Option<Markup>, EvaluateError> {
+pub(crate) fn takes(request: &Request<'_>) -> Result<Vec<Take>, EvaluateError> {
     let Request { assembly, params, world, design, seed, .. } = *request;
     let studio = Studio::new((assembly, params), (world, design), seed);
     let chosen = match &request.episodes[..] {
@@ -49,26 +46,30 @@ pub(crate) fn film(request: &Request<'_>) -> Result<Option<Markup>, EvaluateErro
     for (index, name) in chosen {
         takes.extend(studio.take(index, name)?);
     }
+    Ok(takes)
+}
+
+/// Episodes from starts of a seed, drawn in at most so many bytes; none where there are none.
+pub(crate) fn film(takes: &[Take], seed: u64, most_bytes: usize) -> Option<Markup> {
     if takes.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let set = Set::new(&takes);
-    let step = world.env.time_step;
-    Ok(Some(html! {
-        p { (told_of(&takes, seed)) @if !set.ground.is_empty() { " Lines on the ground are " (length(set.spacing)) " apart." } }
+    let set = Set::new(takes);
+    Some(html! {
+        p { (told_of_all(takes, seed)) @if !set.ground.is_empty() { " Lines on the ground are " (length(set.spacing)) " apart." } }
         div.film {
-            (player(&set, &takes, step, request.most_bytes / takes.len()))
-            div { @for (number, take) in takes.iter().enumerate() { (stills(&set, (number, take), step)) } }
+            (player(&set, takes, most_bytes / takes.len()))
+            div { @for (number, take) in takes.iter().enumerate() { (stills(&set, (number, take))) } }
         }
-    }))
+    })
 }
 
 /// What is shown, in a sentence.
-fn told_of(takes: &[Take], seed: u64) -> String {
+fn told_of_all(takes: &[Take], seed: u64) -> String {
     let which = match takes {
         [one] => format!("Held-out episode {}", one.index),
         [best, worst] if best.name == "best" && worst.name == "worst" => {
-            format!("The best and the worst, by return, of the first {} held-out episodes", record::LOOKED_THROUGH)
+            format!("The best and the worst, by return, of the first {} held-out episodes", LOOKED_THROUGH)
         }
         [first, ..] if !first.name.is_empty() => "The first held-out episode of each kind".to_owned(),
         _ => "Held-out episodes".to_owned(),
@@ -80,45 +81,41 @@ fn length(metres: f64) -> String {
     if metres < 1.0 { format!("{} mm", decimal(1e3 * metres, 0)) } else { format!("{} m", decimal(metres, 0)) }
 }
 
-impl Take {
-    /// How it ended, for tasks that know success: a word and its class.
-    fn verdict(&self) -> Option<&'static str> {
-        self.result.outcome.as_ref().map(|outcome| if outcome.success { "success" } else { "failure" })
-    }
-
-    /// What it is called.
-    fn title(&self) -> String {
-        if self.name.is_empty() { format!("episode {}", self.index) } else { self.name.clone() }
-    }
-
-    /// What it was about and came to, in a line.
-    fn told(&self) -> String {
-        let worth = self.result.undiscounted_return;
-        let about = self.moments.first().map_or("", |moment| &moment.sight.about);
-        let gap = if about.is_empty() { "" } else { ", " };
-        format!(
-            "episode {}: {about}{gap}return {}, {} steps",
-            self.index,
-            decimal(worth, decimals(worth)),
-            self.result.steps
-        )
-    }
+/// How it ended, for tasks that know success: a word and its class.
+fn verdict(take: &Take) -> Option<&'static str> {
+    take.result.outcome.as_ref().map(|outcome| if outcome.success { "success" } else { "failure" })
 }
 
-impl record::Moment {
-    /// What is to be known of it.
-    fn told(&self) -> String {
-        if self.sight.told.is_empty() {
-            format!("return {}", decimal(self.worth, decimals(self.worth)))
-        } else {
-            self.sight.told.clone()
-        }
+/// What an episode is called.
+fn title(take: &Take) -> String {
+    if take.name.is_empty() { format!("episode {}", take.index) } else { take.name.clone() }
+}
+
+/// What it was about and came to, in a line.
+fn told_of_take(take: &Take) -> String {
+    let worth = take.result.undiscounted_return;
+    let about = take.moments.first().map_or("", |moment| &moment.sight.about);
+    let gap = if about.is_empty() { "" } else { ", " };
+    format!(
+        "episode {}: {about}{gap}return {}, {} steps",
+        take.index,
+        decimal(worth, decimals(worth)),
+        take.result.steps
+    )
+}
+
+/// What is to be known of a moment.
+fn told_of_moment(moment: &Moment) -> String {
+    if moment.sight.told.is_empty() {
+        format!("return {}", decimal(moment.worth, decimals(moment.worth)))
+    } else {
+        moment.sight.told.clone()
     }
 }
 
 /// The film, which waits for the script, and for those who do not want things to move.
-fn player(set: &Set, takes: &[Take], step: f64, each: usize) -> Markup {
-    let reels: Vec<Reel> = takes.iter().enumerate().map(|take| Reel::new(set, take, step, each)).collect();
+fn player(set: &Set, takes: &[Take], each: usize) -> Markup {
+    let reels: Vec<Reel> = takes.iter().enumerate().map(|take| Reel::new(set, take, each)).collect();
     let data = serde_json::to_string(&reels).expect("texts and finite numbers can be written as JSON");
     // Nothing in it ends the script.
     let data = data.replace('<', "\\u003c");
@@ -128,7 +125,7 @@ fn player(set: &Set, takes: &[Take], step: f64, each: usize) -> Markup {
             div.takes role="group" aria-label="Which episode" {
                 @for (i, take) in takes.iter().enumerate() {
                     button type="button" data-take=(i) aria-pressed=(i == 0) {
-                        (take.title()) @if let Some(verdict) = take.verdict() { " " span class=(verdict) { (verdict) } }
+                        (title(take)) @if let Some(verdict) = verdict(take) { " " span class=(verdict) { (verdict) } }
                     }
                 }
             }
@@ -144,22 +141,22 @@ fn player(set: &Set, takes: &[Take], step: f64, each: usize) -> Markup {
 }
 
 /// Some moments of an episode.
-fn stills(set: &Set, (number, take): (usize, &Take), step: f64) -> Markup {
+fn stills(set: &Set, (number, take): (usize, &Take)) -> Markup {
     let still = |(i, name): (usize, &str)| {
         let moment = &take.moments[i];
-        let seconds = decimal(step * moment.step as f64, 2);
+        let seconds = decimal(take.time_step * moment.step as f64, 2);
         let gap = if name.is_empty() { "" } else { ", " };
-        let (id, title) = (format!("still-{number}-{i}"), format!("{}: {name}{gap}{seconds} s", take.title()));
+        let (id, title) = (format!("still-{number}-{i}"), format!("{}: {name}{gap}{seconds} s", title(take)));
         html! {
-            li { (drawing(set, (number, take, i), false, [&id, &title, &moment.told()])) span { (name) (gap) (seconds) " s" } }
+            li { (drawing(set, (number, take, i), false, [&id, &title, &told_of_moment(moment)])) span { (name) (gap) (seconds) " s" } }
         }
     };
     html! {
         figure.stills {
             figcaption {
-                strong { (take.title()) }
-                @if let Some(verdict) = take.verdict() { " " span class=(verdict) { (verdict) } }
-                " " small { (take.told()) }
+                strong { (title(take)) }
+                @if let Some(verdict) = verdict(take) { " " span class=(verdict) { (verdict) } }
+                " " small { (told_of_take(take)) }
             }
             ol { @for chosen in chosen(take) { (still(chosen)) } }
         }
@@ -230,7 +227,6 @@ fn drawing(set: &Set, (number, take, i): (usize, &Take, usize), film: bool, [id,
 mod tests {
     use hwasp_core::{End, EpisodeResult, Form, Sight, Solid};
 
-    use super::record::Moment;
     use super::*;
 
     /// A ball that moves to the right by so much a moment, over a floor, beside a post.
@@ -253,7 +249,7 @@ mod tests {
             outcome: None,
             terms: vec![],
         };
-        Take { index: 3, name: "best".into(), moments: (0..moments).map(moment).collect(), result }
+        Take { index: 3, name: "best".into(), moments: (0..moments).map(moment).collect(), result, time_step: 0.01 }
     }
 
     #[test]
@@ -275,7 +271,7 @@ mod tests {
     fn a_film_has_what_changes_within_its_bytes() {
         let takes = [take(0.002, 100, |_| vec![])];
         let set = Set::new(&takes);
-        let json = |most| serde_json::to_value(Reel::new(&set, (0, &takes[0]), 0.01, most)).unwrap();
+        let json = |most| serde_json::to_value(Reel::new(&set, (0, &takes[0]), most)).unwrap();
         let frames = |reel: &serde_json::Value| -> Vec<String> {
             reel["frames"].as_array().unwrap().iter().map(|frame| frame.as_str().unwrap().to_owned()).collect()
         };

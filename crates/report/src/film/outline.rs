@@ -52,9 +52,9 @@ pub(super) fn outline(eye: &Eye, solid: &Solid) -> String {
             cylinder(&near, &far)
         }
         Form::Box(half) => faces(eye, *at, axes, *half).concat(),
-        Form::Hull(points) => {
+        Form::Mesh(mesh) => {
             let seen = |point: &World| eye.flat((0..3).fold(*at, |sum, i| along(sum, point[i], axes[i])));
-            polygon(&hull(points.iter().map(seen).collect()))
+            polygon(&hull(mesh.corners().iter().map(seen).collect()))
         }
     }
 }
@@ -69,7 +69,7 @@ pub(super) fn reach(solid: &Solid, direction: World) -> f64 {
         Form::Capsule { radius, half_length } => radius * length(&own) + half_length * own[2].abs(),
         Form::Cylinder { radius, half_length } => radius * length(&own[..2]) + half_length * own[2].abs(),
         Form::Box(half) => (0..3).map(|i| half[i] * own[i].abs()).sum(),
-        Form::Hull(points) => points.iter().map(|&point| inner(point, own)).fold(f64::NEG_INFINITY, f64::max),
+        Form::Mesh(mesh) => mesh.corners().iter().map(|&point| inner(point, own)).fold(f64::NEG_INFINITY, f64::max),
     };
     inner(direction, solid.at) + out
 }
@@ -210,6 +210,8 @@ fn hull(mut points: Vec<Flat>) -> Vec<Flat> {
 
 #[cfg(test)]
 mod tests {
+    use hwasp_core::Mesh;
+
     use super::*;
 
     /// From the south, level: x is to the right, and a metre is 1000 units.
@@ -221,6 +223,11 @@ mod tests {
         Solid::new(form, [0.0; 3], [0; 3])
     }
 
+    /// Of an outline only the points matter.
+    fn mesh(points: &[World]) -> Form {
+        Form::Mesh(Mesh::new(points.to_vec(), Vec::new()).into())
+    }
+
     #[test]
     fn paths_by_hand() {
         assert_eq!(polygon(&[[0.4, -3.0], [10.6, 2.0], [-0.2, 2.2]]), "M0-3l11 5l-11 0z");
@@ -230,7 +237,7 @@ mod tests {
         let capsule = Form::Capsule { radius: 0.05, half_length: 0.1 };
         assert_eq!(seen(capsule), "M50-100l0 200a49 49 0 0 1 -100 0l0-200a49 49 0 0 1 100 0z");
         let points = [[0.1, 0.0, 0.0], [-0.1, 0.3, 0.0], [0.0, 0.0, 0.1], [0.0, 0.2, 0.02]];
-        assert_eq!(seen(Form::Hull(points.into())), "M-100 0l100-100l100 100z");
+        assert_eq!(seen(mesh(&points)), "M-100 0l100-100l100 100z");
         assert!(seen(Form::Plane([0.0; 2])).is_empty());
     }
 
@@ -250,7 +257,7 @@ mod tests {
             (Form::Capsule { radius: 0.1, half_length: 0.4 }, 0.1),
             (Form::Cylinder { radius: 0.2, half_length: 0.4 }, 0.2),
             (Form::Box([0.3, 0.1, 0.2]), root * 0.4),
-            (Form::Hull([[0.3, 0.3, 0.0], [-1.0, 0.0, 0.0]].into()), root * 0.6),
+            (mesh(&[[0.3, 0.3, 0.0], [-1.0, 0.0, 0.0]]), root * 0.6),
         ];
         for (form, expected) in forms {
             let far = reach(&Solid { at: [0.0, 0.0, 5.0], ..solid(form.clone()) }, [root, root, 0.0]);

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::order::painted;
 use super::outline::{outline, polyline};
-use super::record::Take;
 use super::set::Set;
+use hwasp_scene::Take;
 
 /// What the script plays of an episode.
 #[derive(Debug, Serialize)]
@@ -77,7 +77,7 @@ impl Frame {
 
 impl Reel {
     /// An episode of a set, in at most so many bytes: with fewer pictures where it has too many.
-    pub(super) fn new(set: &Set, (number, take): (usize, &Take), step: f64, most_bytes: usize) -> Self {
+    pub(super) fn new(set: &Set, (number, take): (usize, &Take), most_bytes: usize) -> Self {
         let frame = |i: usize| Frame::new(set, (number, i), &take.moments[i].sight);
         let frames: Vec<Frame> = (0..take.moments.len()).map(frame).collect();
         let mut every = 1;
@@ -91,8 +91,8 @@ impl Reel {
             if bytes <= most_bytes || shown.len() <= 12 {
                 let moment = |&i: &usize| &take.moments[i];
                 return Self {
-                    times: shown.iter().map(|i| (moment(i).step as f64 * step * 1e3).round() / 1e3).collect(),
-                    told: shown.iter().map(|i| moment(i).told()).collect(),
+                    times: shown.iter().map(|i| (moment(i).step as f64 * take.time_step * 1e3).round() / 1e3).collect(),
+                    told: shown.iter().map(|i| super::told_of_moment(moment(i))).collect(),
                     frames: texts,
                 };
             }

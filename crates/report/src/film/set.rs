@@ -5,7 +5,7 @@ use hwasp_core::{Form, Solid};
 use super::eye::{Eye, Flat, World, along, inner};
 use super::order::{is_ground, seen_box};
 use super::outline::{polygon, polyline};
-use super::record::Take;
+use hwasp_scene::Take;
 
 /// Where the eye stands where nothing moves along one line: from the x axis towards y, and up, rad.
 const AZIMUTH: f64 = -0.55;

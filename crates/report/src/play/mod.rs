@@ -30,7 +30,7 @@ pub use canvas::Picture;
 pub use draw::play;
 #[cfg(feature = "mujoco")]
 pub use film::{Take, film};
-pub use html::page;
+pub use html::{film_page, record, scene_page};
 pub use label::{Caption, label};
 #[cfg(feature = "mujoco")]
 pub use moments::{MOMENTS, Moment, moments};

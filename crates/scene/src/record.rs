@@ -11,34 +11,38 @@ const MOST_MOMENTS: usize = 200;
 /// Time between moments where they are not too many, s.
 const PACE: f64 = 0.05;
 /// Episodes that are looked through for those that are shown.
-pub(super) const LOOKED_THROUGH: u64 = 16;
+pub const LOOKED_THROUGH: u64 = 16;
 /// The most kinds of episodes that are shown.
 const MOST_KINDS: usize = 6;
 
 /// A moment of an episode.
 #[derive(Clone, Debug)]
-pub(crate) struct Moment {
+pub struct Moment {
     /// Steps before it.
-    pub(crate) step: usize,
+    pub step: usize,
     /// The return so far, undiscounted.
-    pub(crate) worth: f64,
-    pub(crate) sight: Sight,
+    pub worth: f64,
+    /// How it looked.
+    pub sight: Sight,
 }
 
 /// An episode on film.
 #[derive(Clone, Debug)]
-pub(crate) struct Take {
+pub struct Take {
     /// Its index among the held-out episodes.
-    pub(crate) index: u64,
+    pub index: u64,
     /// Why it is shown: `best`, `worst`, a kind of episode; may be empty.
-    pub(crate) name: String,
+    pub name: String,
     /// Moments, the first and the last of the episode among them.
-    pub(crate) moments: Vec<Moment>,
-    pub(crate) result: EpisodeResult,
+    pub moments: Vec<Moment>,
+    /// What it came to.
+    pub result: EpisodeResult,
+    /// What a step lasts, s.
+    pub time_step: f64,
 }
 
 /// A world whose episodes can be filmed, with the controller that acts in them.
-pub(crate) struct Studio<'a> {
+pub struct Studio<'a> {
     assembly: &'a Assembly,
     world: &'a World,
     design: &'a [f64],
@@ -48,7 +52,8 @@ pub(crate) struct Studio<'a> {
 }
 
 impl<'a> Studio<'a> {
-    pub(crate) fn new(
+    /// A controller (`params` of the assembly's policy) in a world on a design, SI; `seed` is the root seed of the starts.
+    pub fn new(
         (assembly, params): (&'a Assembly, &'a [f32]),
         (world, design): (&'a World, &'a [f64]),
         seed: u64,
@@ -57,7 +62,7 @@ impl<'a> Studio<'a> {
     }
 
     /// Which episodes to show, each with why: the first of each kind, where there are several; else the best and the worst.
-    pub(crate) fn choice(&self) -> Result<Vec<(u64, String)>, EvaluateError> {
+    pub fn choice(&self) -> Result<Vec<(u64, String)>, EvaluateError> {
         let sampler = sampler(self.assembly, self.world, self.design)?;
         let controller = self.assembly.policy.controller_params(self.params);
         let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, 0..LOOKED_THROUGH), 1.0)?;
@@ -85,7 +90,7 @@ impl<'a> Studio<'a> {
     }
 
     /// Films an episode; none where nothing is to be seen of this world.
-    pub(crate) fn take(&self, index: u64, name: String) -> Result<Option<Take>, EvaluateError> {
+    pub fn take(&self, index: u64, name: String) -> Result<Option<Take>, EvaluateError> {
         let kept = Arc::new(Mutex::new(Kept::default()));
         let filmed = Filmed { make: Arc::clone(&self.world.make), kept: Arc::clone(&kept) };
         let world = World::described(self.world.law.clone(), self.world.env.clone(), Arc::new(filmed));
@@ -94,7 +99,13 @@ impl<'a> Studio<'a> {
         let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, index..index + 1), 1.0)?;
         let moments = std::mem::take(&mut lock(&kept).moments);
         let result = results.into_iter().next().and_then(Result::ok);
-        Ok(result.filter(|_| !moments.is_empty()).map(|result| Take { index, name, moments, result }))
+        Ok(result.filter(|_| !moments.is_empty()).map(|result| Take {
+            index,
+            name,
+            moments,
+            result,
+            time_step: self.world.env.time_step,
+        }))
     }
 }
 

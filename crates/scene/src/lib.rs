@@ -1,0 +1,21 @@
+//! Episodes in three dimensions: filmed ([`Studio`]), as data ([`Scene`]), and as a page that shows them ([`page`]).
+//!
+//! Whatever [shows itself](hwasp_core::Environment::look) can be filmed. The page draws with a small WebGL 2 program of its own
+//! ([`VIEWER_JS`]) and loads nothing.
+
+#![forbid(unsafe_code)]
+
+mod numbers;
+mod page;
+mod record;
+mod scene;
+mod surface;
+
+pub use page::{data, page, source_hash};
+pub use record::{LOOKED_THROUGH, Moment, Studio, Take};
+pub use scene::Scene;
+
+/// The viewer: a classic script that defines `hwaspViewer(element, scene, options)`. What it takes and gives stands at its top.
+pub const VIEWER_JS: &str = include_str!("viewer.js");
+/// How the viewer looks; colours are variables.
+pub const VIEWER_CSS: &str = include_str!("viewer.css");

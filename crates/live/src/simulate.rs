@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hwasp_core::{Policy as _, Serial};
+use hwasp_core::Serial;
 use hwasp_experiment::Catalogue;
 use hwasp_runs::{RunError, SavedRun};
 use hwasp_scene::{Scene, Studio};

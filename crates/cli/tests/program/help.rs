@@ -17,7 +17,7 @@ fn the_version() {
 #[test]
 fn help_of_every_command() {
     let sandbox = Sandbox::new("help-commands");
-    let commands = "train eval design export parts tolerances play plot report compare reproduce check schema list laws graph init";
+    let commands = "train eval design export parts tolerances play watch plot report compare reproduce check schema list laws graph init";
     let deploy = ["init", "check", "calibrate", "run", "replay", "identify", "trials"]
         .map(|command| format!("deploy {command} --help"));
     let lines = commands

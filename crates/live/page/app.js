@@ -3,7 +3,7 @@ import { Chart } from "./chart.js";
 import { Design, Runs, Tiles, result } from "./panels.js";
 import { Robot } from "./robot.js";
 import { ask } from "./server.js";
-import { el, mark, spoken, tell } from "./words.js";
+import { el, mark, spoken, tell, title } from "./words.js";
 
 const PACE = 1000, PACE_HIDDEN = 10_000, PACE_SILENT = 2000; // ms between two looks
 const MOST_SHOWN = 12; // runs in the chart unless somebody asks for more
@@ -165,7 +165,7 @@ function render() {
   const detail = state.details.get(state.chosen);
   runs.show(state.runs, state.chosen, state.shown ?? new Set());
   for (const id of ["curves", "robot", "design"]) $(id).hidden = !detail;
-  document.title = detail ? `${title(detail)} · hwasp watch` : "hwasp watch";
+  document.title = detail ? `${percent(detail)}${title(detail.label)} · hwasp watch` : "hwasp watch";
   if (!detail) return;
   columns(detail);
   const [kind, name] = state.column.split("/");
@@ -182,10 +182,7 @@ function render() {
   log(detail.log.join("\n"));
 }
 
-function title(detail) {
-  const { label, state: at, budget, env_steps: steps } = detail;
-  return at === "training" && budget ? `${Math.floor((100 * steps) / budget)} % ${label}` : label;
-}
+const percent = ({ state: at, budget, env_steps: steps }) => (at === "training" && budget ? `${Math.floor((100 * steps) / budget)} % ` : "");
 
 // The choice of columns, those of the run that is looked at.
 function columns(detail) {
@@ -212,7 +209,7 @@ function drawChart(kind, name) {
     if (!column) continue;
     unit = column.unit;
     const ys = column.values.map((value) => (value === null ? null : value / column.to_si));
-    lines.push({ name: run.label, mark: mark(run.index), xs: detail.curve[state.axis], ys });
+    lines.push({ name: title(run.label), mark: mark(run.index), xs: detail.curve[state.axis], ys });
     if (run.index === state.chosen && detail.curve.width > 1) notes.push(`Each point is the mean of ${detail.curve.width} iterations.`);
     if (run.index === state.chosen && column.meaning) notes.push(`${column.meaning[0].toUpperCase()}${column.meaning.slice(1).replace(/\.?$/, ".")}`);
   }

@@ -72,7 +72,7 @@ export class Chart {
     for (const value of ticks(y0, y1, 5)) {
       const at = this.y(value);
       picture.append(svg("path", { class: "grid", d: `M${MARGIN.left} ${at}H${width - MARGIN.right}` }));
-      picture.append(svg("text", { x: MARGIN.left - 8, y: at + 4, "text-anchor": "end" }, Math.abs(value) >= 1e4 ? short(value) : String(Number(value.toPrecision(6))).replace("-", "−")));
+      picture.append(svg("text", { x: MARGIN.left - 8, y: at + 4, "text-anchor": "end" }, Math.abs(value) >= 1e4 ? short(value) : Number(value.toPrecision(6)).toLocaleString("en", { maximumFractionDigits: 9 }).replace("-", "−")));
     }
     for (const value of ticks(x0, x1, Math.max(2, width / 130))) {
       const at = this.x(value);

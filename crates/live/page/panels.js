@@ -1,7 +1,7 @@
 // What stands about runs in words, bars and small curves. Each part is built once and then brought up to date, so that whoever
 // moves a slider or reads along keeps his place.
 import { sparkline } from "./chart.js";
-import { count, duration, el, mark, number, short, spoken, tell, withUnit } from "./words.js";
+import { count, duration, el, mark, number, short, spoken, tell, title, withUnit } from "./words.js";
 
 const STATES = { training: "training", finished: "finished", interrupted: "interrupted", gone: "folder gone" };
 
@@ -26,7 +26,8 @@ export class Runs {
     while (this.cards.length > runs.length) this.cards.pop().item.remove();
     for (const run of runs) {
       const card = this.cards[run.index] ?? this.card(run);
-      tell(card.name, run.label);
+      tell(card.name, title(run.label));
+      card.name.title = run.label;
       tell(card.state, STATES[run.state]);
       card.state.className = `state ${run.state}`;
       tell(card.facts, facts(run));
@@ -34,10 +35,10 @@ export class Runs {
       card.button.setAttribute("aria-pressed", String(run.index === chosen));
       card.item.classList.toggle("chosen", run.index === chosen);
       card.box.checked = shown.has(run.index);
-      card.box.setAttribute("aria-label", `${run.label} in the learning curve`);
+      card.box.setAttribute("aria-label", `${title(run.label)} in the learning curve`);
       card.label.hidden = runs.length < 2;
       card.progress.value = run.budget ? Math.min(1, run.env_steps / run.budget) : 0;
-      card.progress.setAttribute("aria-label", `Progress of ${run.label}`);
+      card.progress.setAttribute("aria-label", `Progress of ${title(run.label)}`);
     }
   }
 
@@ -114,7 +115,8 @@ export class Design {
   build(detail, key) {
     [this.built, this.rows] = [key, new Map()];
     this.wanted.clear();
-    tell(this.note, detail.design.length === 0 ? "Nothing is designed here." : detail.simulates ? "The mark is the trained design. Move a slider, and the robot is simulated with that value beside the trained one." : "The mark is the design between its limits.");
+    const best = detail.design.some((group) => group.optimum !== null) ? ", the dashed one the best that is known" : "";
+    tell(this.note, detail.design.length === 0 ? "Nothing is designed here." : detail.simulates ? `The black mark is the trained design${best}. Move a slider, and the robot with that value is simulated beside the trained one.` : `The black mark is the design between its limits${best}.`);
     this.element.replaceChildren(...detail.design.map((group) => this.group(group, detail.simulates)));
   }
 
@@ -155,7 +157,8 @@ export class Design {
   }
 
   ends(group, times) {
-    return el("div", { className: "ends" }, el("span", {}, this.told(group, group.limits[0] * times)), el("span", {}, this.told(group, group.limits[1] * times)));
+    const told = (limit) => withUnit(Number(((limit * times) / group.to_si).toPrecision(4)).toLocaleString("en"), group.unit);
+    return el("div", { className: "ends" }, ...group.limits.map((limit) => el("span", {}, told(limit))));
   }
 
   place(track, name, value, group, times) {
@@ -205,7 +208,7 @@ export function result(element, summary) {
   const rows = [
     ["Return", interval(evaluation.return)],
     ["Discounted return", interval(evaluation.discounted_return)],
-    ...evaluation.success.map(({ kind, successes, episodes }) => [kind === "all" ? "Success" : `Success, ${spoken(kind)}`, `${share(successes / episodes)} (${successes} of ${episodes})`]),
+    ...(evaluation.success ?? []).map(({ kind, successes, episodes }) => [kind === "all" ? "Success" : `Success, ${spoken(kind)}`, `${share(successes / episodes)} (${successes} of ${episodes})`]),
     ["Training", `${count(summary.env_steps)} steps in ${duration(summary.wall_s)}`],
   ];
   element.replaceChildren(
@@ -216,12 +219,12 @@ export function result(element, summary) {
 
 // What a change of the design costs.
 export function cost(element, { before, after, change }) {
-  const success = (judged) => judged.evaluation.success.find(({ kind }) => kind === "all");
+  const success = (judged) => judged.success?.find(({ kind }) => kind === "all");
   const all = success(before) && success(after);
   const head = ["", "Return", ...(all ? ["Success"] : [])];
   const rows = [
-    ["as trained", number(before.evaluation.return.mean), ...(all ? [share(success(before).successes / success(before).episodes)] : [])],
-    ["changed", number(after.evaluation.return.mean), ...(all ? [share(success(after).successes / success(after).episodes)] : [])],
+    ["as trained", number(before.return.mean), ...(all ? [share(success(before).successes / success(before).episodes)] : [])],
+    ["changed", number(after.return.mean), ...(all ? [share(success(after).successes / success(after).episodes)] : [])],
     ["difference", interval(change.return), ...(all && change.success ? [`${number(100 * change.success.mean)} points`] : [])],
   ];
   element.replaceChildren(el("table", {},

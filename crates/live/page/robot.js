@@ -53,14 +53,14 @@ export class Robot {
     ask(path, { signal: this.request.signal }).then(
       (answer) => {
         Object.assign(this, { shown: asked, shownWish: wish, shownPolicy: policy, asked: "" });
-        if (query) this.compared(answer);
+        if (query) this.compared(answer, `/api/runs/${detail.index}/cost?${query}`, this.request.signal);
         else this.episodes(answer);
       },
       (error) => {
         if (error.name === "AbortError") return;
         this.asked = "";
         // What cannot be simulated is not asked for again; what was too much at once, or had no answer, is.
-        if (error.status === 503 || error.status === 0) return;
+        if ([0, 503, 504].includes(error.status)) return;
         Object.assign(this, { shown: asked, shownWish: wish, shownPolicy: policy });
         tell(this.note, `No episode: ${error.message}.`);
       },
@@ -83,14 +83,24 @@ export class Robot {
     this.setStages(1, answer.scene);
   }
 
-  compared(answer) {
+  compared(answer, costs, signal) {
     this.learned(answer.before.design);
     const seen = answer.before.scene.takes.length > 0 && answer.after.scene.takes.length > 0;
     tell(this.note, this.told(answer, "with the trained and with the changed design."));
     if (seen) this.setStages(2, answer.before.scene, answer.after.scene);
     else this.setStages(0);
-    cost(this.costs, answer);
     this.costs.hidden = false;
+    this.costs.classList.add("old");
+    if (this.costs.childElementCount === 0) this.costs.textContent = "Counting what it costs …";
+    ask(costs, { signal }).then(
+      (answer) => {
+        cost(this.costs, answer);
+        this.costs.classList.remove("old");
+      },
+      (error) => {
+        if (error.name !== "AbortError") tell(this.costs, `What it costs is not known: ${error.message}.`);
+      },
+    );
   }
 
   // Shows so many scenes side by side; what shows already goes on with the new ones.

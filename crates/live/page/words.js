@@ -33,6 +33,9 @@ export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 // What a name says to people: thumb_distal_radius is "thumb distal radius".
 export const spoken = (name) => name.replaceAll("_", " ");
 
+// What a run is called: the last two folders of its path tell it from others.
+export const title = (label) => label.split("/").filter(Boolean).slice(-2).join("/");
+
 // An element with properties; what begins with aria- or data- is an attribute.
 export function el(tag, props = {}, ...children) {
   const element = document.createElement(tag);

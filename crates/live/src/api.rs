@@ -6,7 +6,8 @@
 //! | `/api/runs` | the runs: name, state, how far they are |
 //! | `/api/runs/0` | one of them: curve, design, terms of the reward, log. `?since=EPOCH.WIDTH.POINTS` leaves out the points that a page has |
 //! | `/api/runs/0/episode` | episodes of its newest controller in three dimensions, and the design that they are on |
-//! | `/api/runs/0/what-if?NAME=VALUE…` | the same episode on this design and on one with other values, SI, and what that changes |
+//! | `/api/runs/0/what-if?NAME=VALUE…` | the same episode on this design and on one with other values, SI |
+//! | `/api/runs/0/cost?NAME=VALUE…` | what these values change in return and success, on more episodes |
 //!
 //! The answers are JSON. Those of the first two have a tag, and with `If-None-Match` nothing comes where nothing is new.
 
@@ -43,6 +44,7 @@ enum Path {
     Run(usize),
     Episode(usize),
     WhatIf(usize),
+    Cost(usize),
 }
 
 impl Path {
@@ -57,6 +59,7 @@ impl Path {
             "" if !rest.ends_with('/') => Some(Self::Run(index)),
             "episode" => Some(Self::Episode(index)),
             "what-if" => Some(Self::WhatIf(index)),
+            "cost" => Some(Self::Cost(index)),
             _ => None,
         }
     }
@@ -82,21 +85,20 @@ impl Desk {
         }
         let Some(path) = Path::read(target.path()) else { return nothing("nothing is at this address") };
         let query = target.query().unwrap_or_default();
-        let what = match path {
+        let (index, what) = match path {
             Path::Runs | Path::Run(_) => {
                 let (since, tag) = (since(query), known(&request.headers));
                 let read = tokio::task::spawn_blocking(move || self.read(&path, &since, tag.as_deref()));
-                return read.await.unwrap_or_else(|_| {
-                    Answer::fault(StatusCode::INTERNAL_SERVER_ERROR, "the run folders could not be read")
-                });
+                return read.await.unwrap_or_else(|_| unread());
             }
-            Path::Episode(_) => What::Episode,
-            Path::WhatIf(_) => match values(query) {
-                Ok(values) => What::Changed(values),
-                Err(error) => return Answer::fault(StatusCode::BAD_REQUEST, &error),
-            },
+            Path::Episode(index) => (index, Ok(What::Episode)),
+            Path::WhatIf(index) => (index, values(query).map(What::Changed)),
+            Path::Cost(index) => (index, values(query).map(What::Cost)),
         };
-        let (Path::Episode(index) | Path::WhatIf(index) | Path::Run(index)) = path else { return nothing("no run") };
+        let what = match what {
+            Ok(what) => what,
+            Err(error) => return Answer::fault(StatusCode::BAD_REQUEST, &error),
+        };
         let desk = Arc::clone(&self);
         let asked = tokio::task::spawn_blocking(move || desk.asked(index, what)).await;
         match asked {
@@ -104,7 +106,7 @@ impl Desk {
                 Answer::fault(StatusCode::GATEWAY_TIMEOUT, "the simulation takes longer than a minute")
             }),
             Ok(Err(fault)) => fault,
-            Err(_) => Answer::fault(StatusCode::INTERNAL_SERVER_ERROR, "the run folder could not be read"),
+            Err(_) => unread(),
         }
     }
 
@@ -142,6 +144,10 @@ impl Desk {
 
 fn nothing(why: &str) -> Answer {
     Answer::fault(StatusCode::NOT_FOUND, why)
+}
+
+fn unread() -> Answer {
+    Answer::fault(StatusCode::INTERNAL_SERVER_ERROR, "the run folders could not be read; the program's own output may say why")
 }
 
 fn refused(refusal: Refusal) -> Answer {

@@ -164,3 +164,44 @@ impl Curve {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(iteration: u64, value: f64) -> MetricsRow {
+        MetricsRow {
+            iteration,
+            env_steps: 10 * (iteration + 1),
+            wall_s: iteration as f64,
+            discounted_return: value,
+            undiscounted_return: 2.0 * value,
+            learner: vec![f64::NAN],
+            terms: Vec::new(),
+            design_totals: vec![1.0],
+        }
+    }
+
+    /// 1100 rows are 275 points of 4 rows: at 501, and at the next 501, neighbours were joined.
+    #[test]
+    fn a_long_curve_has_few_points_which_are_means() {
+        let mut curve = Curve { width: 1, ..Curve::default() };
+        (0..1100).for_each(|i| curve.push(&row(i, i as f64)));
+        assert_eq!((curve.points.len(), curve.width), (275, 4));
+        let last = curve.points.last().unwrap();
+        // Rows 1096 to 1099.
+        assert_eq!((last.env_steps, last.wall_s), (11_000, 1099.0));
+        assert_eq!((last.mean(0), last.mean(1), last.mean(3)), (2195.0, 1097.5, 1.0));
+        assert!(last.mean(2).is_nan());
+        // Twenty rows, ten steps a second.
+        assert_eq!(curve.steps_per_s(), Some(10.0));
+    }
+
+    #[test]
+    fn what_is_not_known_is_left_out_of_means() {
+        let mut curve = Curve { width: 2, ..Curve::default() };
+        [1.0, f64::NAN, f64::NAN, f64::NAN].into_iter().enumerate().for_each(|(i, v)| curve.push(&row(i as u64, v)));
+        assert_eq!(curve.points[0].mean(1), 1.0);
+        assert!(curve.points[1].mean(1).is_nan());
+    }
+}

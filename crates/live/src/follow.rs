@@ -316,7 +316,9 @@ impl Follower {
     fn columns(&self, from: usize) -> Vec<Column<'_>> {
         let (about, curve) = (&self.about.1, &self.table.1);
         let names = &curve.names;
-        let fixed = [("return", "undiscounted return"), ("discounted_return", "discounted return")];
+        let fixed = [("return", "the mean over the training episodes of an iteration, which have noise; undiscounted"),
+            ("discounted_return", "the mean over the training episodes of an iteration, which have noise"),
+        ];
         let fixed = fixed.map(|(name, meaning)| (name, "return", meaning, ("", 1.0)));
         let learner = names.learner.iter().map(|name| (name.as_str(), "learner", "", ("", 1.0)));
         let meaning = |name| about.words.meaning(Role::Reward, name).unwrap_or_default();

@@ -30,7 +30,7 @@ const MOST_CONNECTIONS: usize = 64;
 /// The longest head of a request, bytes.
 const LONGEST_HEAD: usize = 32 << 10;
 /// How long a client may take for the head of a request.
-const HEAD_TIME: Duration = Duration::from_secs(10);
+const HEAD_TIME: Duration = Duration::from_secs(5);
 /// How long a connection is used, and how long its last answer may take then.
 const CONNECTION_TIME: Duration = Duration::from_secs(60);
 /// Threads that read run folders.

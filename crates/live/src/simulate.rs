@@ -8,7 +8,8 @@ use hwasp_experiment::Catalogue;
 use hwasp_runs::{RunError, SavedRun};
 use hwasp_scene::{Scene, Studio};
 use hwasp_settings::text::show;
-use hwasp_training::{Assembly, Change, EvaluateError, Evaluation, Reference};
+use hwasp_training::collect::EpisodeAnswer;
+use hwasp_training::{Assembly, Change, EvaluateError, Evaluation, held_out, sampler};
 use hyper::StatusCode;
 use serde::Serialize;
 
@@ -18,6 +19,8 @@ use crate::stamp::Stamp;
 
 /// Episodes by which a design is judged.
 const JUDGED: u64 = 20;
+/// Episodes that are shown of a training that goes on: its time is dear.
+const WHILE_TRAINING: u64 = 2;
 /// How often a checkpoint is looked for that a training has just replaced.
 const TRIES: usize = 3;
 
@@ -37,6 +40,8 @@ pub(crate) enum What {
     Episode,
     /// An episode on both its design and one with these values, SI.
     Changed(Vec<(String, f64)>),
+    /// What such a design is worth more, or less, on more episodes.
+    Cost(Vec<(String, f64)>),
 }
 
 /// A run whose episodes are asked for, one after the other.
@@ -55,6 +60,8 @@ struct Opened {
     env_steps: Option<u64>,
     /// Which episodes are shown, and why.
     choice: Vec<(u64, String)>,
+    /// How its own design did in the episodes by which others are judged.
+    trials: Vec<EpisodeAnswer>,
 }
 
 #[derive(Serialize)]
@@ -72,17 +79,22 @@ struct Comparison<'a> {
     policy: &'a str,
     env_steps: Option<u64>,
     seed: u64,
-    before: Judged,
-    after: Judged,
-    /// What it changes, episode by episode.
-    change: Change,
+    before: Shown,
+    after: Shown,
 }
 
 #[derive(Serialize)]
-struct Judged {
+struct Shown {
     design: Vec<f64>,
     scene: Scene,
-    evaluation: Evaluation,
+}
+
+#[derive(Serialize)]
+struct Cost {
+    before: Evaluation,
+    after: Evaluation,
+    /// What it changes, episode by episode.
+    change: Change,
 }
 
 impl Stage {
@@ -91,13 +103,14 @@ impl Stage {
         let known = |opened: &Opened| {
             (&opened.run, opened.experiment, opened.policy) == (&asked.run, asked.experiment, asked.policy)
         };
-        let opened = match self.opened.take().filter(known).map_or_else(|| open(asked, catalogue), Ok) {
+        let mut opened = match self.opened.take().filter(known).map_or_else(|| open(asked, catalogue), Ok) {
             Ok(opened) => opened,
             Err(error) => return (Answer::fault(StatusCode::CONFLICT, &error), false),
         };
         let answer = match &asked.what {
             What::Episode => opened.episodes(),
             What::Changed(values) => opened.compared(values),
+            What::Cost(values) => opened.cost(values),
         };
         self.opened = Some(opened);
         match answer {
@@ -118,9 +131,12 @@ fn open(asked: &Asked, catalogue: &Catalogue) -> Result<Opened, String> {
         saved,
         params,
         env_steps,
-        choice: Vec::new(),
+        choice: (0..WHILE_TRAINING).map(|index| (index, String::new())).collect(),
+        trials: Vec::new(),
     };
-    opened.choice = opened.studio(&opened.built()).choice().map_err(|error| error.to_string())?;
+    if matches!(asked.policy, Policy::Last(_)) {
+        opened.choice = opened.studio(&opened.built()).choice().map_err(|error| error.to_string())?;
+    }
     Ok(opened)
 }
 
@@ -185,24 +201,49 @@ impl Opened {
     }
 
     fn compared(&self, values: &[(String, f64)]) -> Result<Answer, Answer> {
-        let assembly = self.assembly();
-        let design = assembly.policy.design(&self.params);
-        let changed = changed(assembly, &design, values).map_err(|e| Answer::fault(StatusCode::BAD_REQUEST, &e))?;
-        let (before, after) = (self.built(), assembly.worlds.training.law.as_built(&changed));
-        let reference = Reference::new(assembly, &before, &self.params, (JUDGED, self.seed()), &Serial).map_err(failed)?;
-        let (evaluation, change) = reference.against(&after, &self.params).map_err(failed)?;
         let first = &self.choice[..self.choice.len().min(1)];
-        let judged = |design, built: &[f64], evaluation| -> Result<Judged, Answer> {
-            Ok(Judged { design, scene: self.scene(built, first).map_err(failed)?, evaluation })
+        let shown = |design: Vec<f64>| -> Result<Shown, Answer> {
+            let built = self.assembly().worlds.training.law.as_built(&design);
+            Ok(Shown { scene: self.scene(&built, first).map_err(failed)?, design })
         };
+        let changed = self.changed(values)?;
         Ok(Answer::json(&Comparison {
             policy: &self.policy.name(),
             env_steps: self.env_steps,
             seed: self.seed(),
-            before: judged(design, &before, reference.evaluation.clone())?,
-            after: judged(changed, &after, evaluation)?,
-            change,
+            before: shown(self.assembly().policy.design(&self.params))?,
+            after: shown(changed)?,
         }))
+    }
+
+    fn cost(&mut self, values: &[(String, f64)]) -> Result<Answer, Answer> {
+        let changed = self.assembly().worlds.training.law.as_built(&self.changed(values)?);
+        if self.trials.is_empty() {
+            self.trials = self.tried(&self.built()).map_err(failed)?;
+        }
+        let trials = self.tried(&changed).map_err(failed)?;
+        let (asked, env) = ((JUDGED, self.seed()), &self.assembly().worlds.deployment.env);
+        let judged = |trials: &[EpisodeAnswer]| Evaluation::new(trials, env, asked);
+        let cost = || {
+            let change = Change::of(&self.trials, &trials, asked.1)?;
+            Ok(Cost { before: judged(&self.trials)?, after: judged(&trials)?, change })
+        };
+        cost().map(|cost| Answer::json(&cost)).map_err(failed)
+    }
+
+    /// How the controller does on a design as built.
+    fn tried(&self, built: &[f64]) -> Result<Vec<EpisodeAnswer>, EvaluateError> {
+        let assembly = self.assembly();
+        let sampler = sampler(assembly, &assembly.worlds.deployment, built)?;
+        let controller = assembly.policy.controller_params(&self.params);
+        let discount = assembly.experiment().discount();
+        Ok(sampler.outcomes(&Serial, controller, &held_out(self.seed(), 0..JUDGED), discount)?)
+    }
+
+    /// The design with other values.
+    fn changed(&self, values: &[(String, f64)]) -> Result<Vec<f64>, Answer> {
+        let design = self.assembly().policy.design(&self.params);
+        changed(self.assembly(), &design, values).map_err(|error| Answer::fault(StatusCode::BAD_REQUEST, &error))
     }
 }
 

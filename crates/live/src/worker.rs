@@ -88,7 +88,7 @@ fn lock(kept: &Mutex<Kept>) -> std::sync::MutexGuard<'_, Kept> {
 }
 
 fn work(jobs: &Receiver<Job>, kept: &Mutex<Kept>, catalogue: &Catalogue) {
-    step_back(19);
+    step_back(10);
     let mut stage = Stage::default();
     for Job { asked, answer } in jobs {
         if answer.is_closed() {

@@ -202,8 +202,8 @@ fn success_rates(results: &[EpisodeAnswer]) -> Vec<SuccessRate> {
 }
 
 impl Evaluation {
-    /// What the episodes of a world come to.
-    pub(crate) fn new(
+    /// What the episodes of a world come to: so many, from the starts of a root seed.
+    pub fn new(
         results: &[EpisodeAnswer],
         env: &EnvSpec,
         (episodes, seed): (u64, u64),

@@ -11,14 +11,16 @@ use crate::session::{Session, Training, What};
 use crate::{log, output, report};
 
 pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    // Where no page can be had, nothing is begun.
+    let listener = args.watch.map(watch::listener).transpose()?;
     let session = Session::begin(asked(args, catalogue)?, catalogue)?;
     let path = session.path().to_owned();
     log::to_file(&path.join("train.log"));
     session.warn();
     let stop = stop_on_signal()?;
     output::remark(&session.opening());
-    let serve = |place| watch::serve(place, vec![path.clone()], Vec::new(), catalogue);
-    let page = args.watch.map(serve).transpose()?;
+    let serve = |listener| watch::serve(listener, vec![path.clone()], Vec::new(), catalogue);
+    let page = listener.map(serve).transpose()?;
     if let Some(page) = &page {
         output::remark(&format!("watch it at {}", page.url()));
     }

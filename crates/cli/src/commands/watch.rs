@@ -1,5 +1,6 @@
 //! `hwasp watch`, and the page of `hwasp train --watch`.
 
+use std::net::TcpListener;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -23,7 +24,8 @@ pub(crate) fn run(args: &WatchArgs, catalogue: &Catalogue) -> Result<(), Failure
         }
     }
     let stop = stop_on_signal()?;
-    let server = serve(args.place(), args.runs.clone(), args.hosts.clone(), catalogue)?;
+    let listener = listener(args.place())?;
+    let server = serve(listener, args.runs.clone(), args.hosts.clone(), catalogue)?;
     output::print(&format!("{}\n", server.url()))?;
     for path in args.runs.iter().filter(|path| !path.exists()) {
         output::remark(&format!("note: {} is not there yet; it appears on the page when training begins", path.display()));
@@ -33,17 +35,20 @@ pub(crate) fn run(args: &WatchArgs, catalogue: &Catalogue) -> Result<(), Failure
     Ok(())
 }
 
+/// Listens where it was asked for.
+pub(crate) fn listener(place: Place) -> Result<TcpListener, Failure> {
+    let (address, others) = place.asked();
+    let hint = "name another port; 0 takes one that is free";
+    listen(address, others).map_err(|error| Failure::input(error).hint(hint))
+}
+
 /// Serves the page of some runs.
 pub(crate) fn serve(
-    place: Place,
+    listener: TcpListener,
     runs: Vec<PathBuf>,
     names: Vec<String>,
     catalogue: &Catalogue,
 ) -> Result<Server, Failure> {
-    let (address, others) = place.asked();
-    let listener = listen(address, others).map_err(|error| {
-        Failure::input(error).hint("name another port with --port or in the address; 0 takes one that is free")
-    })?;
     let server = Server::start(listener, Options { runs, names }, catalogue)?;
     if server.token().is_some() {
         output::remark(&format!(

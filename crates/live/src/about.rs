@@ -87,8 +87,7 @@ impl About {
                 to_si: shown.map_or(1.0, |unit| unit.to_si),
                 limits: [group.lo, group.hi],
                 parameters: names(group),
-                moves: (group.first..group.first + group.count)
-                    .any(|i| experiment.design.place_of(i) != Place::Fixed),
+                moves: (group.first..group.first + group.count).any(|i| experiment.design.place_of(i) != Place::Fixed),
                 optimum,
             }
         });

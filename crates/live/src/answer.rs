@@ -47,7 +47,12 @@ impl Answer {
             Ok(text) => Self { status, kind: "application/json", body: text.into(), tag: None },
             Err(error) => {
                 let text = format!("{{\"error\":\"an answer cannot be written: {error:?}\"}}");
-                Self { status: StatusCode::INTERNAL_SERVER_ERROR, kind: "application/json", body: text.into(), tag: None }
+                Self {
+                    status: StatusCode::INTERNAL_SERVER_ERROR,
+                    kind: "application/json",
+                    body: text.into(),
+                    tag: None,
+                }
             }
         }
     }

@@ -74,8 +74,11 @@ impl Desk {
         if let Err(refusal) = self.door.check(&request.headers, wanted) {
             return refused(refusal);
         }
-        if target.authority().is_some() || target.path_and_query().is_none_or(|text| text.as_str().len() > LONGEST_TARGET) {
-            return Answer::fault(StatusCode::URI_TOO_LONG, "the address is too long, or is that of another server");
+        if target.authority().is_some() {
+            return Answer::fault(StatusCode::BAD_REQUEST, "this server is no proxy");
+        }
+        if target.path_and_query().is_some_and(|text| text.as_str().len() > LONGEST_TARGET) {
+            return Answer::fault(StatusCode::URI_TOO_LONG, "the address is too long");
         }
         if request.method != Method::GET {
             return Answer::fault(StatusCode::METHOD_NOT_ALLOWED, "this server only answers GET");
@@ -147,7 +150,10 @@ fn nothing(why: &str) -> Answer {
 }
 
 fn unread() -> Answer {
-    Answer::fault(StatusCode::INTERNAL_SERVER_ERROR, "the run folders could not be read; the program's own output may say why")
+    Answer::fault(
+        StatusCode::INTERNAL_SERVER_ERROR,
+        "the run folders could not be read; the program's own output may say why",
+    )
 }
 
 fn refused(refusal: Refusal) -> Answer {

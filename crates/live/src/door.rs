@@ -57,7 +57,9 @@ impl Door {
         let told = |name: &'static str| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
         let own = matches!(told("sec-fetch-site"), None | Some("same-origin" | "none"));
         // Whoever follows a link from elsewhere may see the page.
-        let visit = wanted == Wanted::Page && told("sec-fetch-mode") == Some("navigate") && told("sec-fetch-dest") == Some("document");
+        let visit = wanted == Wanted::Page
+            && told("sec-fetch-mode") == Some("navigate")
+            && told("sec-fetch-dest") == Some("document");
         if !own && !visit {
             return Err(Refusal::Site);
         }
@@ -132,7 +134,16 @@ mod tests {
         for host in ["127.0.0.1:8437", "localhost", "LOCALHOST:9000", "[::1]:8437", "[::1]", "127.0.0.2", "box.lan:1"] {
             assert_eq!(door.check(&headers(&[("host", host)]), Wanted::Data), Ok(()), "{host}");
         }
-        for host in ["evil.example", "localhost.evil.example", "127.0.0.1.evil.example:8437", "10.0.0.5", "", "localhost:x", "localhost.", "[::1"] {
+        for host in [
+            "evil.example",
+            "localhost.evil.example",
+            "127.0.0.1.evil.example:8437",
+            "10.0.0.5",
+            "",
+            "localhost:x",
+            "localhost.",
+            "[::1",
+        ] {
             assert_eq!(door.check(&headers(&[("host", host)]), Wanted::Page), Err(Refusal::Host), "{host}");
         }
         assert_eq!(door.check(&headers(&[]), Wanted::Page), Err(Refusal::Host));
@@ -146,7 +157,10 @@ mod tests {
         let ask = |pairs: &[(&'static str, &str)], wanted| {
             door.check(&headers(&[&[("host", "localhost:8437")], pairs].concat()), wanted)
         };
-        assert_eq!(ask(&[("origin", "http://localhost:8437"), ("sec-fetch-site", "same-origin")], Wanted::Data), Ok(()));
+        assert_eq!(
+            ask(&[("origin", "http://localhost:8437"), ("sec-fetch-site", "same-origin")], Wanted::Data),
+            Ok(())
+        );
         for origin in ["http://evil.example", "null", "http://localhost:9999", "https://localhost:8437"] {
             assert_eq!(ask(&[("origin", origin)], Wanted::Data), Err(Refusal::Site), "{origin}");
         }

@@ -248,7 +248,11 @@ impl Follower {
 
     /// Why nothing of it can be simulated, where that is so.
     pub(crate) fn unsimulated(&self) -> Option<&str> {
-        if self.state == State::Gone { Some("the run folder is no longer there") } else { self.about.1.fault.as_deref() }
+        if self.state == State::Gone {
+            Some("the run folder is no longer there")
+        } else {
+            self.about.1.fault.as_deref()
+        }
     }
 
     pub(crate) fn overview(&self, index: usize) -> Overview<'_> {
@@ -290,7 +294,11 @@ impl Follower {
         let design = about.design.iter().enumerate().map(|(i, group)| {
             let built = summary.and_then(|summary| summary.design.get(&group.name));
             let total = curve.last.as_ref().and_then(|row| row.design_totals.get(i).copied());
-            Group { group, total: built.map(|built| built.total).or(total), values: built.map(|built| &built.values[..]) }
+            Group {
+                group,
+                total: built.map(|built| built.total).or(total),
+                values: built.map(|built| &built.values[..]),
+            }
         });
         let faults = [about.fault.as_ref(), curve.fault.as_ref(), self.summary.1.as_ref().err()];
         Detail {
@@ -316,7 +324,8 @@ impl Follower {
     fn columns(&self, from: usize) -> Vec<Column<'_>> {
         let (about, curve) = (&self.about.1, &self.table.1);
         let names = &curve.names;
-        let fixed = [("return", "the mean over the training episodes of an iteration, which have noise; undiscounted"),
+        let fixed = [
+            ("return", "the mean over the training episodes of an iteration, which have noise; undiscounted"),
             ("discounted_return", "the mean over the training episodes of an iteration, which have noise"),
         ];
         let fixed = fixed.map(|(name, meaning)| (name, "return", meaning, ("", 1.0)));

@@ -8,8 +8,8 @@ use hwasp_experiment::{Catalogue, EXPERIMENT};
 use hwasp_runs::Writers;
 use serde::Serialize;
 
-use crate::stamp::Stamp;
 use crate::follow::{Detail, Follower, Overview, Since};
+use crate::stamp::Stamp;
 
 /// The most runs of a page.
 pub(crate) const MOST_RUNS: usize = 100;

@@ -149,7 +149,9 @@ fn params(saved: &SavedRun, policy: Policy) -> Result<(Vec<f32>, Option<u64>), R
             let mut found = saved.found();
             for _ in 1..TRIES {
                 match found {
-                    Err(RunError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => found = saved.found(),
+                    Err(RunError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
+                        found = saved.found()
+                    }
                     _ => break,
                 }
             }

@@ -71,9 +71,10 @@ impl Worker {
         let (answer, later) = oneshot::channel();
         match self.jobs.try_send(Job { asked, answer }) {
             Ok(()) => later.await.unwrap_or_else(|_| ended()),
-            Err(TrySendError::Full(_)) => {
-                Answer::fault(StatusCode::SERVICE_UNAVAILABLE, "too many simulations are asked for at once; try again in a second")
-            }
+            Err(TrySendError::Full(_)) => Answer::fault(
+                StatusCode::SERVICE_UNAVAILABLE,
+                "too many simulations are asked for at once; try again in a second",
+            ),
             Err(TrySendError::Disconnected(_)) => ended(),
         }
     }

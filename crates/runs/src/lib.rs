@@ -22,8 +22,8 @@ pub use layout::{CHECKPOINTS, DESIGN, LARGEST_SUMMARY, LOG, METRICS, POLICY, PRO
 pub use policy_file::{PolicyFileError, read_policy, write_policy};
 pub use replay::{Replay, ReplayError, replay};
 pub use run_folder::{
-    ExtraFiles, Extras, Keeping, Provenance, Resumed, RunFolder, SavedRun, Writers, no_extras, saved_experiment, saved_json,
-    saved_metrics, saved_provenance, saved_summary,
+    ExtraFiles, Extras, Keeping, Provenance, Resumed, RunFolder, SavedRun, Writers, no_extras, saved_experiment,
+    saved_json, saved_metrics, saved_provenance, saved_summary,
 };
 pub use store::{CheckpointStore, Found};
 pub use summary::{DesignGroupSummary, Summary};

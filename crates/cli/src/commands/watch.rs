@@ -28,7 +28,10 @@ pub(crate) fn run(args: &WatchArgs, catalogue: &Catalogue) -> Result<(), Failure
     let server = serve(listener, args.runs.clone(), args.hosts.clone(), catalogue)?;
     output::print(&format!("{}\n", server.url()))?;
     for path in args.runs.iter().filter(|path| !path.exists()) {
-        output::remark(&format!("note: {} is not there yet; it appears on the page when training begins", path.display()));
+        output::remark(&format!(
+            "note: {} is not there yet; it appears on the page when training begins",
+            path.display()
+        ));
     }
     output::remark("Ctrl-C ends it");
     wait(&stop);

@@ -33,9 +33,12 @@ pub(crate) fn begin(path: &Path, experiment: &Experiment, keeping: Keeping) -> R
 
 /// Trains a run into a folder to its end; returns its parameters.
 pub(crate) fn trained(path: &Path) -> Vec<f32> {
-    let experiment = experiment();
-    let assembly = Assembly::new(&experiment).unwrap();
-    let mut folder = begin(path, &experiment, Keeping::default());
+    trained_as(path, &experiment())
+}
+
+pub(crate) fn trained_as(path: &Path, experiment: &Experiment) -> Vec<f32> {
+    let assembly = Assembly::new(experiment).unwrap();
+    let mut folder = begin(path, experiment, Keeping::default());
     let observer: &mut dyn Observer = &mut folder;
     let trained = train(&assembly, &Serial, observer, &AtomicBool::new(false)).unwrap();
     folder.finish(&assembly, &trained, &no_extras).unwrap();
@@ -71,13 +74,15 @@ impl Answer {
     }
 
     pub(crate) fn header(&self, name: &str) -> Option<&str> {
-        let found = self.head.lines().find_map(|line| line.split_once(": ").filter(|(n, _)| n.eq_ignore_ascii_case(name)));
+        let found =
+            self.head.lines().find_map(|line| line.split_once(": ").filter(|(n, _)| n.eq_ignore_ascii_case(name)));
         found.map(|(_, value)| value)
     }
 }
 
 pub(crate) fn connect(address: SocketAddr) -> TcpStream {
-    let address = if address.ip().is_unspecified() { SocketAddr::new([127, 0, 0, 1].into(), address.port()) } else { address };
+    let address =
+        if address.ip().is_unspecified() { SocketAddr::new([127, 0, 0, 1].into(), address.port()) } else { address };
     let stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(90))).unwrap();
     stream

@@ -3,13 +3,18 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 
-use crate::client::{ask, empty, get, serve, trained};
+use hwasp_testing::{layers, resolve};
+
+use crate::client::{ask, empty, get, serve, trained, trained_as};
 
 /// Simulations wait in a short queue, and beyond it nothing piles up.
 #[test]
 fn more_simulations_than_can_wait_are_put_off() {
     let folder = empty("queue");
-    trained(&folder.join("run"));
+    // A simulation of it takes twenty thousand steps.
+    let few = [("train.env_steps", "8000"), ("train.evaluation_episodes", "4")];
+    let layers = few.iter().fold(layers("mass-spring"), |layers, (key, value)| layers.with_override(key, value));
+    trained_as(&folder.join("run"), &resolve(layers, None).unwrap());
     let server = serve(&[folder]);
     let detail = get(&server, "/api/runs/0").json();
     let group = &detail["design"][0];

@@ -21,7 +21,10 @@ fn a_finished_run_is_told_in_full() {
     let server = serve(&[folder.clone()]);
     let list = get(&server, "/api/runs").json();
     let run = of(&list, 0);
-    assert_eq!((&run["state"], &run["problem"], &run["method"]), (&json!("finished"), &json!("reach"), &json!("hwasp")));
+    assert_eq!(
+        (&run["state"], &run["problem"], &run["method"]),
+        (&json!("finished"), &json!("reach"), &json!("hwasp"))
+    );
     assert_eq!((&run["env_steps"], &run["budget"], &run["left_s"]), (&json!(9600), &json!(9600), &Value::Null));
     let detail = get(&server, "/api/runs/0").json();
     let table = hwasp_runs::saved_metrics(&folder.join("run")).unwrap();

@@ -179,7 +179,7 @@ function render() {
   $("result").hidden = !detail.summary;
   if (detail.summary) result($("result-rows"), detail.summary);
   $("log").hidden = detail.log.length === 0;
-  log(detail.log.join("\n"));
+  log(detail.log.map(line).join("\n"));
 }
 
 const percent = ({ state: at, budget, env_steps: steps }) => (at === "training" && budget ? `${Math.floor((100 * steps) / budget)} % ` : "");
@@ -221,11 +221,14 @@ function drawChart(kind, name) {
   chart.show(lines, { label, unit, time: state.axis === "wall_s" });
 }
 
+// A line of a log with the time of day alone.
+const line = (text) => text.replace(/^(\d{4}-\d\d-\d\dT[\d:.]+Z)\s+(?:INFO )?/, (_, time) => `${new Date(time).toLocaleTimeString("en-GB")}  `);
+
 // The log stays at its end unless somebody reads further up.
 function log(text) {
   const lines = $("log-lines");
   if (lines.textContent === text) return;
-  const end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
+  const end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 40;
   lines.textContent = text;
   if (end) lines.scrollTop = lines.scrollHeight;
 }

@@ -70,7 +70,11 @@ impl About {
         let head: Head = text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default();
         match saved_experiment(run, &[], catalogue) {
             Ok(experiment) => Self::of(head, &experiment),
-            Err(error) => Self { head, fault: Some(error.to_string()), ..Self::default() },
+            Err(error) => Self {
+                head,
+                fault: Some(error.to_string().trim_start_matches("error: ").to_owned()),
+                ..Self::default()
+            },
         }
     }
 

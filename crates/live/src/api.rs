@@ -54,7 +54,8 @@ impl Path {
             return Some(Self::Runs);
         }
         let (index, what) = rest.strip_prefix('/').map(|rest| rest.split_once('/').unwrap_or((rest, "")))?;
-        let index = index.parse().ok().filter(|_| index.bytes().all(|byte| byte.is_ascii_digit()))?;
+        // Each run has one address: no `+1`, no `01`.
+        let index = index.parse().ok().filter(|number: &usize| number.to_string() == index)?;
         match what {
             "" if !rest.ends_with('/') => Some(Self::Run(index)),
             "episode" => Some(Self::Episode(index)),

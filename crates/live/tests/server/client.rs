@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -13,6 +13,9 @@ use hwasp_live::{Options, Server, listen};
 use hwasp_runs::{Keeping, Provenance, RunFolder, no_extras};
 use hwasp_training::{Assembly, Observer, train};
 use serde_json::Value;
+
+/// The longest time that a test waits for an answer.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(90);
 
 /// A folder of a test's own, where nothing is.
 pub(crate) fn empty(name: &str) -> PathBuf {
@@ -83,18 +86,21 @@ impl Answer {
 pub(crate) fn connect(address: SocketAddr) -> TcpStream {
     let address =
         if address.ip().is_unspecified() { SocketAddr::new([127, 0, 0, 1].into(), address.port()) } else { address };
-    let stream = TcpStream::connect(address).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(90))).unwrap();
-    stream
+    TcpStream::connect(address).unwrap()
 }
 
-/// Sends bytes, and reads until the server closes; none where it answers nothing. It may close before all is sent.
-pub(crate) fn send(address: SocketAddr, bytes: &[u8]) -> Option<Answer> {
+/// Sends bytes, and reads until the server closes; none where it answers nothing. It may close before all is sent. One that says
+/// nothing for a time of `patience` is told that nothing more will come.
+pub(crate) fn send(address: SocketAddr, bytes: &[u8], patience: Duration) -> Option<Answer> {
     let mut stream = connect(address);
     let _ = stream.write_all(bytes);
-    let _ = stream.shutdown(std::net::Shutdown::Write);
+    stream.set_read_timeout(Some(patience)).unwrap();
     let mut answer = Vec::new();
-    let _ = stream.read_to_end(&mut answer);
+    if stream.read_to_end(&mut answer).is_err() {
+        let _ = stream.shutdown(Shutdown::Write);
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let _ = stream.read_to_end(&mut answer);
+    }
     let end = answer.windows(4).position(|four| four == b"\r\n\r\n")?;
     let head = String::from_utf8(answer[..end].to_vec()).unwrap();
     let status = head.split(' ').nth(1).unwrap().parse().unwrap();
@@ -110,7 +116,7 @@ pub(crate) fn ask(server: &Server, method: &str, target: &str, headers: &[(&str,
     for (name, value) in headers {
         request += &format!("{name}: {value}\r\n");
     }
-    send(server.address(), format!("{request}\r\n").as_bytes()).unwrap()
+    send(server.address(), format!("{request}\r\n").as_bytes(), PATIENCE).unwrap()
 }
 
 pub(crate) fn get(server: &Server, target: &str) -> Answer {

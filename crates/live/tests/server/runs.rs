@@ -147,6 +147,8 @@ fn runs_that_are_damaged_are_told_and_the_rest_is_shown() {
     fs::write(run.join("experiment.toml"), &text).unwrap();
     fs::remove_file(run.join("summary.json")).unwrap();
     fs::write(run.join("policy.safetensors"), "no policy").unwrap();
+    wait(&server, "/api/runs/0", |value| value["simulates"] == json!(true) && value["policy"] == json!("last"));
+    std::thread::sleep(Duration::from_millis(250));
     let answer = get(&server, "/api/runs/0/episode");
     assert!(answer.status == 409 && answer.text().contains("policy"), "{}", answer.text());
 }

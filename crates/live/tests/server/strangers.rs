@@ -5,11 +5,12 @@ use std::io::Write;
 use std::net::TcpStream;
 use std::os::unix::fs::symlink;
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use hwasp_live::Server;
 use proptest::prelude::*;
 
-use crate::client::{ask, connect, empty, get, send, serve, serve_at, trained};
+use crate::client::{PATIENCE, ask, connect, empty, get, send, serve, serve_at, trained};
 
 #[test]
 fn other_names_and_other_sites_are_refused() {
@@ -25,7 +26,7 @@ fn other_names_and_other_sites_are_refused() {
         assert_eq!(status(&[("Host", &own), ("Origin", "http://evil.example")], path), 403, "{path}");
         assert_eq!(status(&[("Sec-Fetch-Site", "cross-site")], path), 403, "{path}");
     }
-    let none = send(server.address(), b"GET /api/runs HTTP/1.0\r\n\r\n").unwrap();
+    let none = send(server.address(), b"GET /api/runs HTTP/1.0\r\n\r\n", PATIENCE).unwrap();
     assert_eq!(none.status, 421);
 }
 
@@ -104,7 +105,7 @@ fn server_of_strangers() -> &'static Server {
 
 /// Pieces of which requests are made, with bytes at random between them.
 fn piece() -> impl Strategy<Value = Vec<u8>> {
-    let known = [
+    let known: &'static [&str] = &[
         "GET ",
         "POST ",
         "HEAD ",
@@ -143,7 +144,7 @@ fn piece() -> impl Strategy<Value = Vec<u8>> {
         "ä",
     ];
     prop_oneof![
-        8 => prop::sample::select(&known[..]).prop_map(|text| text.as_bytes().to_vec()),
+        8 => prop::sample::select(known).prop_map(|text| text.as_bytes().to_vec()),
         1 => prop::collection::vec(any::<u8>(), 0..40),
         1 => (prop::sample::select(&b"A/%\r\n:"[..]), 0..40_000_usize).prop_map(|(byte, times)| vec![byte; times]),
     ]
@@ -160,7 +161,7 @@ proptest! {
         if sound {
             bytes.extend(b" HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
         }
-        let answer = send(server.address(), &bytes);
+        let answer = send(server.address(), &bytes, Duration::from_millis(40));
         if let Some(answer) = answer {
             prop_assert!(!String::from_utf8_lossy(&answer.body).contains(SECRET));
             prop_assert!((100..600).contains(&answer.status));

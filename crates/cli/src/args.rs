@@ -4,6 +4,7 @@ mod deploy;
 mod designs;
 mod parse;
 mod studies;
+mod watch;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub(crate) use deploy::{DeployIdentifyArgs, DeployRehearseArgs, DeployReplayArgs
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
 pub(crate) use studies::{CompareArgs, ReproduceArgs};
+pub(crate) use watch::{LOOPBACK, Place, WatchArgs};
 
 /// What the program says where nothing is asked of it.
 pub(crate) const GREETING: &str = "\
@@ -40,6 +42,7 @@ Examples:
   hwasp list                                  what can be trained
   hwasp train mass-spring                     train a design and its controller, into runs/
   hwasp eval runs/mass-spring-hwasp-seed0     evaluate the result on held-out starts
+  hwasp watch runs                            follow all trainings in a browser
   hwasp plot runs/* --out curves.png          compare runs
   hwasp report runs/mass-spring-hwasp-seed0   all of it on one page for a browser
 
@@ -111,6 +114,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Show held-out episodes of a run: a page in three dimensions for a browser, films (GIF, MP4, WebM) and a sheet of stills
     Play(PlayArgs),
+    /// Follow trainings on a page for a browser: curves, design, log, the robot in three dimensions, and what another design would do
+    Watch(WatchArgs),
     /// Draw learning curves; runs of one experiment and method are summarised together
     Plot(PlotArgs),
     /// Make the report of a run or a comparison: one HTML file for a browser or a printer, which loads nothing
@@ -246,6 +251,9 @@ pub(crate) struct TrainArgs {
     /// Write the learning curve for TensorBoard as well, into tensorboard/ of the run folder
     #[arg(long)]
     pub(crate) tensorboard: bool,
+    /// Follow the training on a page for a browser, as `hwasp watch` does. The page stays until Ctrl-C
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, default_missing_value = LOOPBACK, value_parser = watch::place)]
+    pub(crate) watch: Option<Place>,
     /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,

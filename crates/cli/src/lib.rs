@@ -93,6 +93,7 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::Tolerances(tolerances) => commands::tolerances::run(tolerances, catalogue),
         Command::Replay(replay) => commands::replay::run(replay, catalogue),
         Command::Play(play) => commands::play::run(play, catalogue),
+        Command::Watch(watch) => commands::watch::run(watch, catalogue),
         Command::Plot(plot) => commands::plot::run(plot, catalogue),
         Command::Report(report) => commands::report::run(report, catalogue),
         Command::Compare(compare) => commands::compare::run(compare, catalogue),

@@ -1,17 +1,19 @@
 //! The files of a run folder, by name.
 
 /// Where it came from.
-pub(crate) const PROVENANCE: &str = "provenance.json";
+pub const PROVENANCE: &str = "provenance.json";
 /// Its learning curve.
-pub(crate) const METRICS: &str = "metrics.csv";
+pub const METRICS: &str = "metrics.csv";
 /// Its design.
 pub const DESIGN: &str = "design.toml";
 /// Its parameters.
-pub(crate) const POLICY: &str = "policy.safetensors";
+pub const POLICY: &str = "policy.safetensors";
 /// Checkpoints of a training that is under way, or was.
-pub(crate) const CHECKPOINTS: &str = "checkpoints";
+pub const CHECKPOINTS: &str = "checkpoints";
 /// What it takes to see iterations fail again.
 pub(crate) const FAULTS: &str = "faults";
+/// What was told while it trained.
+pub const LOG: &str = "train.log";
 /// Written last: a folder that has it is finished.
 pub const SUMMARY: &str = "summary.json";
 
@@ -26,7 +28,7 @@ pub(crate) const OWN: [&str; 18] = [
     CHECKPOINTS,
     FAULTS,
     SUMMARY,
-    "train.log",
+    LOG,
     "curves.svg",
     "report.html",
     "tensorboard",

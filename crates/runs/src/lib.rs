@@ -18,12 +18,12 @@ pub mod tensors;
 pub mod text;
 
 pub use error::{RunError, encode, io_error};
-pub use layout::{DESIGN, LARGEST_SUMMARY, SUMMARY};
+pub use layout::{CHECKPOINTS, DESIGN, LARGEST_SUMMARY, LOG, METRICS, POLICY, PROVENANCE, SUMMARY};
 pub use policy_file::{PolicyFileError, read_policy, write_policy};
 pub use replay::{Replay, ReplayError, replay};
 pub use run_folder::{
-    ExtraFiles, Extras, Keeping, Provenance, Resumed, RunFolder, SavedRun, no_extras, saved_experiment, saved_json,
-    saved_metrics, saved_provenance, saved_summary,
+    ExtraFiles, Extras, Keeping, Provenance, Resumed, RunFolder, SavedRun, Writers, no_extras, saved_experiment,
+    saved_json, saved_metrics, saved_provenance, saved_summary,
 };
 pub use store::{CheckpointStore, Found};
 pub use summary::{DesignGroupSummary, Summary};

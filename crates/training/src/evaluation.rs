@@ -202,12 +202,8 @@ fn success_rates(results: &[EpisodeAnswer]) -> Vec<SuccessRate> {
 }
 
 impl Evaluation {
-    /// What the episodes of a world come to.
-    pub(crate) fn new(
-        results: &[EpisodeAnswer],
-        env: &EnvSpec,
-        (episodes, seed): (u64, u64),
-    ) -> Result<Self, StatsError> {
+    /// What the episodes of a world come to: so many, from the starts of a root seed.
+    pub fn new(results: &[EpisodeAnswer], env: &EnvSpec, (episodes, seed): (u64, u64)) -> Result<Self, StatsError> {
         let returns = |pick: fn(&EpisodeResult) -> f64| results.iter().flatten().map(pick).collect::<Vec<_>>();
         let discounted = returns(|e| e.discounted_return);
         let mut stream = Stream::seed_from_u64(seed);

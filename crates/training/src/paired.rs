@@ -100,6 +100,11 @@ fn trials(results: &[EpisodeAnswer]) -> Vec<Option<Trial>> {
 }
 
 impl Change {
+    /// From some episodes to others that began alike; `seed` names the resamples.
+    pub fn of(before: &[EpisodeAnswer], after: &[EpisodeAnswer], seed: u64) -> Result<Self, StatsError> {
+        Self::between(&trials(before), &trials(after), seed)
+    }
+
     /// From some trials to others of the same episodes; `seed` names the resamples.
     fn between(before: &[Option<Trial>], after: &[Option<Trial>], seed: u64) -> Result<Self, StatsError> {
         let pairs: Vec<(Trial, Trial)> = before.iter().zip(after).filter_map(|(b, a)| b.zip(*a)).collect();

@@ -21,6 +21,7 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod tolerances;
 pub(crate) mod train;
+pub(crate) mod watch;
 
 use std::io;
 use std::path::Path;

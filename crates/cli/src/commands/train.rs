@@ -3,7 +3,7 @@
 use hwasp_experiment::Catalogue;
 use hwasp_training::Observer;
 
-use super::{layers, stop_on_signal, typed};
+use super::{layers, stop_on_signal, typed, watch};
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -11,12 +11,19 @@ use crate::session::{Session, Training, What};
 use crate::{log, output, report};
 
 pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    // Where no page can be had, nothing is begun.
+    let listener = args.watch.map(watch::listener).transpose()?;
     let session = Session::begin(asked(args, catalogue)?, catalogue)?;
     let path = session.path().to_owned();
     log::to_file(&path.join("train.log"));
     session.warn();
     let stop = stop_on_signal()?;
     output::remark(&session.opening());
+    let serve = |listener| watch::serve(listener, vec![path.clone()], Vec::new(), catalogue);
+    let page = listener.map(serve).transpose()?;
+    if let Some(page) = &page {
+        output::remark(&format!("watch it at {}", page.url()));
+    }
     let mut progress = Progress::new(session.assembly());
     let mut silence = ();
     let watching: &mut dyn Observer = if args.quiet { &mut silence } else { &mut progress };
@@ -25,6 +32,10 @@ pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure
     let (_, summary) = ended?;
     if !args.quiet {
         output::print(&report::training(&summary, &path))?;
+    }
+    if let Some(page) = &page {
+        output::remark(&format!("the page stays at {} until Ctrl-C", page.url()));
+        watch::wait(&stop);
     }
     Ok(())
 }

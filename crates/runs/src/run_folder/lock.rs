@@ -1,6 +1,7 @@
 //! One program at a time writes to a run folder.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::collections::HashSet;
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::Path;
 
@@ -49,5 +50,53 @@ impl RunLock {
             Err(TryLockError::Error(e)) => return Err(error(e)),
         }
         Ok(Self { _file: file })
+    }
+}
+
+/// The run folders that some program writes to at this moment. To ask takes no lock, so that nobody who begins to write is in the
+/// way of somebody who looks.
+#[derive(Debug, Default)]
+pub struct Writers {
+    /// The files that are locked, by their numbers in the file system.
+    locked: HashSet<u64>,
+}
+
+impl Writers {
+    /// Those of this moment. Where the system does not tell (it is not Linux, or the writer is on another machine), there are none.
+    pub fn now() -> Self {
+        // `1: FLOCK  ADVISORY  WRITE 13883 fe:00:10117228 0 EOF`: the last part of the sixth word is the number of the file.
+        let text = fs::read_to_string("/proc/locks").unwrap_or_default();
+        let number = |line: &str| line.split_whitespace().nth(5)?.rsplit(':').next()?.parse().ok();
+        Self { locked: text.lines().filter(|line| line.contains("WRITE")).filter_map(number).collect() }
+    }
+
+    /// Whether one writes to this folder.
+    #[cfg(unix)]
+    pub fn write_to(&self, folder: &Path) -> bool {
+        use std::os::unix::fs::MetadataExt;
+        fs::metadata(folder.join(LOCK)).is_ok_and(|file| self.locked.contains(&file.ino()))
+    }
+
+    /// Whether one writes to this folder: not known here.
+    #[cfg(not(unix))]
+    pub fn write_to(&self, _: &Path) -> bool {
+        false
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_has_a_writer_as_long_as_it_is_locked() {
+        let folder = std::env::temp_dir().join(format!("hwasp-writers-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        assert!(!Writers::now().write_to(&folder));
+        let lock = RunLock::take(&folder).unwrap();
+        assert!(Writers::now().write_to(&folder));
+        drop(lock);
+        assert!(!Writers::now().write_to(&folder));
+        fs::remove_dir_all(&folder).unwrap();
     }
 }

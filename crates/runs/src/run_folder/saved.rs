@@ -8,7 +8,7 @@ use std::sync::Arc;
 use hwasp_experiment::{Catalogue, EXPERIMENT, Experiment, LONGEST_FILE, Layers, resolve};
 use hwasp_settings::Folder;
 use hwasp_settings::text::shorten;
-use hwasp_training::{Assembly, params_at};
+use hwasp_training::{Assembly, Checkpoint, params_at};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -19,7 +19,7 @@ use crate::files::{Disk, read_limited};
 use crate::layout::{LARGEST_SUMMARY, METRICS, POLICY, PROVENANCE, SUMMARY};
 use crate::metrics::MetricsTable;
 use crate::policy_file::{LARGEST_POLICY, read_policy};
-use crate::store::CheckpointStore;
+use crate::store::{CheckpointStore, Found};
 use crate::summary::{Summary, values_hash};
 
 /// A run that was written before.
@@ -78,15 +78,24 @@ impl SavedRun {
     }
 
     fn params_so_far(&self) -> Result<Vec<f32>, RunError> {
-        let experiment = self.trained.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
-        let store = CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment));
-        let found = store.newest()?;
+        let found = self.found()?;
         found.warn();
         let unfinished = || RunError::Unfinished { path: self.path.clone(), file: POLICY };
         let checkpoint = found.checkpoint.ok_or_else(unfinished)?;
         let steps = checkpoint.env_steps;
         tracing::warn!("{} did not come to its end: this is what it was after {steps} steps", self.path.display());
-        params_at(&self.trained, &checkpoint)
+        self.params_at(&checkpoint)
+    }
+
+    /// The newest checkpoint of a training that did not come to its end yet.
+    pub fn found(&self) -> Result<Found, RunError> {
+        let experiment = self.trained.experiment().to_toml().map_err(|e| encode(EXPERIMENT, &e))?;
+        CheckpointStore::new(&self.path, Arc::new(Disk), experiment_hash(&experiment)).newest()
+    }
+
+    /// The parameters that it had come to.
+    pub fn params_at(&self, checkpoint: &Checkpoint) -> Result<Vec<f32>, RunError> {
+        params_at(&self.trained, checkpoint)
             .map_err(|source| RunError::State { path: self.path.clone(), source: Box::new(source) })
     }
 

@@ -5,7 +5,8 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
-use crate::{Scene, VIEWER_CSS, VIEWER_JS};
+use crate::scene::Scene;
+use crate::viewer::{VIEWER_CSS, VIEWER_JS};
 
 const PAGE_CSS: &str = include_str!("page.css");
 /// Shows the scene that stands in the page.

@@ -66,10 +66,17 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
         }
     };
     let (format, place) = (args.format.into(), (&title[..], out.as_path()));
-    let sheet = match rendered(&saved, &params, &options, format, place, &mut tell)? {
-        Some(sheet) => sheet,
-        None => play::sketch(&takes, &options, format, place, &mut tell)?,
-    };
+    let rendered = rendered(&saved, &params, &options, format, place, &mut tell);
+    let drawn = rendered.and_then(|sheet| match sheet {
+        Some(sheet) => Ok(sheet),
+        None => play::sketch(&takes, &options, format, place, &mut tell),
+    });
+    let sheet = drawn.map_err(|error| match error {
+        error @ PlayError::NoEncoder => Failure::from(error).hint(
+            "install it (Debian, Ubuntu: `apt install ffmpeg`; macOS: `brew install ffmpeg`), or take --format gif",
+        ),
+        error => error.into(),
+    })?;
     told?;
     Ok(output::print(&format!("  {}\n", sheet.display()))?)
 }

@@ -40,7 +40,9 @@ fn pages_alone_and_films_without_their_encoder() {
     let mut files: Vec<_> = files.collect();
     files.sort();
     assert_eq!(files, ["film.html", "scene.html"]);
-    insta::assert_snapshot!(sandbox.refused(&["play run --episodes 1 --format webm", "play run --html --format gif"]));
+    insta::assert_snapshot!(
+        sandbox.transcript(&["play run --episodes 1 --format webm", "play run --html --format gif"])
+    );
 }
 
 /// A robot from a model: trained, filmed, judged with a faster law, and asked for tendons that it does not have.

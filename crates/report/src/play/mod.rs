@@ -173,10 +173,7 @@ pub enum PlayError {
     #[error(transparent)]
     Plot(#[from] PlotError),
     /// MP4 and WebM without the program that makes them.
-    #[error(
-        "MP4 and WebM are made by the program `ffmpeg`, which is not on the PATH: install it (Debian and Ubuntu: `apt install \
-         ffmpeg`; macOS: `brew install ffmpeg`), or take GIF"
-    )]
+    #[error("MP4 and WebM are made by the program `ffmpeg`, which is not on the PATH")]
     NoEncoder,
     /// The program that makes MP4 and WebM gave up.
     #[error("`{}` cannot be made by ffmpeg: {what}", path.display())]

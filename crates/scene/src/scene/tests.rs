@@ -6,7 +6,7 @@ use hwasp_core::{End, EpisodeResult, Mesh, Outcome, Sight};
 use serde_json::Value;
 
 use super::*;
-use crate::Moment;
+use crate::record::Moment;
 
 /// Solids and a cord, at moments 0.05 s apart.
 fn take(solids: impl Fn(usize) -> Vec<Solid>, cord: impl Fn(usize) -> Cord, moments: usize) -> Take {

@@ -102,7 +102,7 @@ pub(crate) enum Command {
     Tolerances(TolerancesArgs),
     /// Repeat the iteration after a checkpoint, one that failed for instance, and say what happens
     Replay(ReplayArgs),
-    /// Draw held-out episodes of a run: as a film for a browser, and grasps as GIF and on one sheet where EGL is at hand
+    /// Show held-out episodes of a run: a page in three dimensions for a browser, films (GIF, MP4, WebM) and a sheet of stills
     Play(PlayArgs),
     /// Follow trainings on a page for a browser: curves, design, log, the robot in three dimensions, and what another design would do
     Watch(WatchArgs),
@@ -321,12 +321,36 @@ pub(crate) struct PlayArgs {
     /// The folder of the pictures; those of the same name are replaced [default: play/ in the run folder]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
-    /// Pixels across of a GIF
+    /// What films are written as; MP4 and WebM need the program `ffmpeg`
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = FilmArg::Gif)]
+    pub(crate) format: FilmArg,
+    /// Write the pages alone, and no films
+    #[arg(long, conflicts_with = "format")]
+    pub(crate) html: bool,
+    /// Pixels across of a film
     #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
     pub(crate) width: u64,
-    /// Pixels down of a GIF
+    /// Pixels down of a film
     #[arg(long, value_name = "PIXELS", default_value = "320", allow_negative_numbers = true, value_parser = side())]
     pub(crate) height: u64,
+}
+
+/// What a film is written as.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FilmArg {
+    Gif,
+    Mp4,
+    Webm,
+}
+
+impl From<FilmArg> for play::Format {
+    fn from(format: FilmArg) -> Self {
+        match format {
+            FilmArg::Gif => Self::Gif,
+            FilmArg::Mp4 => Self::Mp4,
+            FilmArg::Webm => Self::Webm,
+        }
+    }
 }
 
 /// A horizontal axis.

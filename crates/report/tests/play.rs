@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
-use hwasp_report::play::{Caption, Picture, Row, label, sheet};
+use std::path::Path;
+
+use hwasp_report::play::{Caption, Format, Picture, PlayOptions, Row, label, record, sheet, sketch};
+use hwasp_training::Assembly;
 use resvg::tiny_skia::Pixmap;
 
 fn plain(width: usize, height: usize, colour: [u8; 3]) -> Picture {
@@ -19,7 +22,7 @@ fn captions_stand_in_the_four_corners_and_nowhere_else() {
     let picture = plain(320, 240, [90, 120, 150]);
     let caption = |success| Caption {
         object: "sphere · 310 g".into(),
-        success,
+        success: Some(success),
         time: "1.25 s · step 125/500".into(),
         episode: "seed 7 · episode 3".into(),
     };
@@ -43,7 +46,7 @@ fn captions_stand_in_the_four_corners_and_nowhere_else() {
 fn a_sheet_has_a_row_for_each_episode() {
     let row = |red: u8, success| Row {
         lines: vec!["episode 0".into(), "sphere".into()],
-        success,
+        success: Some(success),
         cells: (0..3_u8).map(|i| (plain(40, 30, [red, 0, 10 * i]), "start".to_owned())).collect(),
     };
     let png = sheet("z-grasp", &[row(200, true), row(100, false)]).unwrap();
@@ -66,6 +69,39 @@ fn a_sheet_has_a_row_for_each_episode() {
     let mut odd = row(0, true);
     odd.cells[1].0 = plain(41, 30, [0; 3]);
     assert!(sheet("", &[odd]).unwrap_err().to_string().contains("41 × 30"));
+}
+
+/// A problem in Rust, without the engine: every moment is a picture with what is to be seen, and a film plays as long as the episode.
+#[test]
+fn films_are_drawn() {
+    let assembly = Assembly::new(&hwasp_testing::resolve(hwasp_testing::layers("reach"), None).unwrap()).unwrap();
+    let options = PlayOptions { first: 2, episodes: 2, seed: 5, native: false, size: [200, 160] };
+    let takes = record(&assembly, &assembly.init(), &options).unwrap();
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("drawn");
+    let _ = std::fs::remove_dir_all(&out);
+    let mut told = Vec::new();
+    let sheet =
+        sketch(&takes, &options, Format::Gif, ("reach", &out), &mut |played| told.push(played.clone())).unwrap();
+    assert_eq!(told.iter().map(|played| played.index).collect::<Vec<_>>(), [2, 3]);
+    let mut film = gif::DecodeOptions::new();
+    film.set_color_output(gif::ColorOutput::RGBA);
+    let mut film = film.read_info(std::fs::File::open(out.join("episode-2.gif")).unwrap()).unwrap();
+    assert_eq!((film.width(), film.height()), (200, 160));
+    let mut hundredths = 0;
+    let mut frames = 0;
+    while let Some(frame) = film.read_next_frame().unwrap() {
+        if frames == 0 {
+            // What the design shapes is orange, below the text.
+            let orange = frame.buffer.chunks_exact(4).filter(|p| p[0] > 180 && p[2] < 60).count();
+            assert!(orange > 50, "{orange}");
+        }
+        hundredths += u64::from(frame.delay);
+        frames += 1;
+    }
+    assert_eq!(frames, takes[0].moments.len());
+    let seconds = takes[0].time_step * takes[0].result.steps as f64 + 1.5;
+    assert!((hundredths as f64 / 100.0 - seconds).abs() < 0.06, "{hundredths} for {seconds} s");
+    assert!(Pixmap::decode_png(&std::fs::read(sheet).unwrap()).unwrap().width() > 200);
 }
 
 #[cfg(feature = "mujoco")]
@@ -144,16 +180,17 @@ mod grasps {
     #[allow(clippy::print_stderr)] // says what is left out
     fn pictures_are_written() {
         use hwasp_mujoco::engine::PictureError;
-        use hwasp_report::play::{PlayError, play};
+        use hwasp_report::play::{Format, PlayError, render};
 
         let run = trained();
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("play");
         let _ = std::fs::remove_dir_all(&out);
         let mut told = Vec::new();
-        let played = play(
+        let played = render(
             run.assembly(),
             &run.params().unwrap(),
             &options(0, 1, false),
+            Format::Gif,
             ("a trained hand", &out),
             &mut |played| told.push(played.clone()),
         );

@@ -10,12 +10,9 @@ mod page;
 mod record;
 mod scene;
 mod surface;
+mod viewer;
 
 pub use page::{data, page, source_hash};
 pub use record::{LOOKED_THROUGH, Moment, Studio, Take};
 pub use scene::Scene;
-
-/// The viewer: a classic script that defines `hwaspViewer(element, scene, options)`. What it takes and gives stands at its top.
-pub const VIEWER_JS: &str = include_str!("viewer.js");
-/// How the viewer looks; colours are variables.
-pub const VIEWER_CSS: &str = include_str!("viewer.css");
+pub use viewer::{VIEWER_CSS, VIEWER_JS};

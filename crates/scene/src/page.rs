@@ -5,7 +5,8 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
-use crate::{Scene, VIEWER_CSS, VIEWER_JS};
+use crate::scene::Scene;
+use crate::viewer::{VIEWER_CSS, VIEWER_JS};
 
 const PAGE_CSS: &str = include_str!("page.css");
 /// Shows the scene that stands in the page.
@@ -59,6 +60,34 @@ pub fn source_hash(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whatever_is_said_is_text() {
+        let evil = "</script></title><script>alert(1)</script>\"'&<!--";
+        let html = page(&Scene::new(evil, &[]));
+        // Data, viewer, start.
+        assert_eq!((html.matches("<script").count(), html.matches("</script").count()), (3, 3), "{html}");
+        assert!(!html.contains("<!--") && html.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+        let data = html.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+        assert_eq!(serde_json::from_str::<serde_json::Value>(data).unwrap()["title"], evil);
+    }
+
+    /// Every script and style of the page is named by its policy, which forbids all else, the network too.
+    #[test]
+    fn the_policy_names_what_is_there() {
+        let html = page(&Scene::new("a hand", &[]));
+        let policy = html.split("Content-Security-Policy\" content=\"").nth(1).unwrap().split('"').next().unwrap();
+        assert!(policy.starts_with("default-src 'none'; "), "{policy}");
+        for (open, close) in [("<style>", "</style>"), ("<script>", "</script>")] {
+            for part in html.split(open).skip(1) {
+                let hash = source_hash(part.split(close).next().unwrap());
+                assert!(policy.contains(&hash), "{hash} is missing in {policy}");
+            }
+        }
+        for address in ["http:", "https:", "//cdn", "@import", "url("] {
+            assert!(!html.contains(address), "{address}");
+        }
+    }
 
     /// As `openssl dgst -sha256 -binary | base64` has it.
     #[test]

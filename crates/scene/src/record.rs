@@ -12,6 +12,8 @@ const MOST_MOMENTS: usize = 200;
 const PACE: f64 = 0.05;
 /// Episodes that are looked through for those that are shown.
 pub const LOOKED_THROUGH: u64 = 16;
+/// What tasks call the kind of their episodes where there is but one.
+const ONE_KIND: &str = "all";
 /// The most kinds of episodes that are shown.
 const MOST_KINDS: usize = 6;
 
@@ -39,6 +41,18 @@ pub struct Take {
     pub result: EpisodeResult,
     /// What a step lasts, s.
     pub time_step: f64,
+}
+
+impl Take {
+    /// What kind of episode it is, where its task has several.
+    pub fn kind(&self) -> Option<&str> {
+        self.result.outcome.as_ref().map(|outcome| &*outcome.kind).filter(|kind| *kind != ONE_KIND)
+    }
+
+    /// Whether it succeeded, where its task knows.
+    pub fn success(&self) -> Option<bool> {
+        self.result.outcome.as_ref().map(|outcome| outcome.success)
+    }
 }
 
 /// A world whose episodes can be filmed, with the controller that acts in them.
@@ -96,7 +110,8 @@ impl<'a> Studio<'a> {
         let world = World::described(self.world.law.clone(), self.world.env.clone(), Arc::new(filmed));
         let sampler = sampler(self.assembly, &world, self.design)?;
         let controller = self.assembly.policy.controller_params(self.params);
-        let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, index..index + 1), 1.0)?;
+        let discount = self.assembly.experiment().discount();
+        let results = sampler.outcomes(&Serial, controller, &held_out(self.seed, index..index + 1), discount)?;
         let moments = std::mem::take(&mut lock(&kept).moments);
         let result = results.into_iter().next().and_then(Result::ok);
         Ok(result.filter(|_| !moments.is_empty()).map(|result| Take {

@@ -99,8 +99,8 @@ fn episode(take: &Take, surfaces: &mut Surfaces) -> Episode {
         index: *index,
         name: name.clone(),
         about: first.map_or_else(String::new, |sight| sight.about.clone()),
-        success: result.outcome.as_ref().map(|outcome| outcome.success),
-        kind: result.outcome.as_ref().map(|outcome| outcome.kind.to_string()),
+        success: take.success(),
+        kind: take.kind().map(str::to_owned),
         undiscounted_return: result.undiscounted_return,
         discounted_return: result.discounted_return,
         steps: result.steps,
@@ -176,3 +176,6 @@ fn pose(solid: &Solid) -> Vec<f32> {
     let length = products.iter().map(|part| part * part).sum::<f64>().sqrt();
     solid.at.into_iter().chain(products.map(|part| part / length)).map(|part| part as f32).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,10 +1,10 @@
 //! `hwasp play`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use hwasp_experiment::Catalogue;
-use hwasp_report::play::{self, PlayError, PlayOptions};
+use hwasp_report::play::{self, Format, PlayError, PlayOptions, Played};
 use hwasp_runs::SavedRun;
 
 use super::{saved_run, stand_in};
@@ -53,34 +53,66 @@ pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure>
         written.map_err(|source| PlayError::Write { path: path.clone(), source })?;
         output::print(&format!("  {}\n", path.display()))?;
     }
-    // What grasps is rendered as well.
-    if play::check(saved.assembly()).is_ok() { draw(&saved, &params, &options, (&title, &out)) } else { Ok(()) }
-}
-
-#[cfg(not(feature = "renderer"))]
-#[allow(clippy::unnecessary_wraps, reason = "as the one that draws")]
-fn draw(_: &SavedRun, _: &[f32], _: &PlayOptions, _: (&str, &Path)) -> Result<(), Failure> {
-    output::remark("note: this program was built without the feature `renderer`, and renders no GIF");
-    Ok(())
-}
-
-#[cfg(feature = "renderer")]
-fn draw(saved: &SavedRun, params: &[f32], options: &PlayOptions, place: (&str, &Path)) -> Result<(), Failure> {
+    if args.html {
+        return Ok(());
+    }
     let mut told = Ok(());
-    let sheet = play::play(saved.assembly(), params, options, place, &mut |played| {
-        let verdict = if played.success { "success" } else { "failure" };
-        let line = format!("  episode {:<4} {:<10} {verdict}  {}\n", played.index, played.shape, played.path.display());
+    let mut tell = |played: &Played| {
+        let verdict = played.success.map_or("", |success| if success { "success" } else { "failure" });
+        let line =
+            format!("  episode {:<4} {:<10} {verdict:<7}  {}\n", played.index, played.kind, played.path.display());
         if told.is_ok() {
             told = output::print(&line);
         }
+    };
+    let (format, place) = (args.format.into(), (&title[..], out.as_path()));
+    let rendered = rendered(&saved, &params, &options, format, place, &mut tell);
+    let drawn = rendered.and_then(|sheet| match sheet {
+        Some(sheet) => Ok(sheet),
+        None => play::sketch(&takes, &options, format, place, &mut tell),
     });
+    let sheet = drawn.map_err(|error| match error {
+        error @ PlayError::NoEncoder => Failure::from(error).hint(
+            "install it (Debian, Ubuntu: `apt install ffmpeg`; macOS: `brew install ffmpeg`), or take --format gif",
+        ),
+        error => error.into(),
+    })?;
     told?;
-    match sheet {
-        Ok(sheet) => Ok(output::print(&format!("  {}\n", sheet.display()))?),
+    Ok(output::print(&format!("  {}\n", sheet.display()))?)
+}
+
+/// Films of grasps, rendered by the engine; none of other problems, and where nothing can be rendered.
+#[cfg(not(feature = "renderer"))]
+#[allow(clippy::unnecessary_wraps, reason = "as the one that renders")]
+fn rendered(
+    _: &SavedRun,
+    _: &[f32],
+    _: &PlayOptions,
+    _: Format,
+    _: (&str, &Path),
+    _: &mut dyn FnMut(&Played),
+) -> Result<Option<PathBuf>, PlayError> {
+    Ok(None)
+}
+
+/// Films of grasps, rendered by the engine; none of other problems, and where nothing can be rendered.
+#[cfg(feature = "renderer")]
+fn rendered(
+    saved: &SavedRun,
+    params: &[f32],
+    options: &PlayOptions,
+    format: Format,
+    place: (&str, &Path),
+    told: &mut dyn FnMut(&Played),
+) -> Result<Option<PathBuf>, PlayError> {
+    if play::check(saved.assembly()).is_err() {
+        return Ok(None);
+    }
+    match play::render(saved.assembly(), params, options, format, place, told) {
         Err(error) if error.is_without_renderer() => {
-            output::remark(&format!("note: {error}; the film above needs none of it"));
-            Ok(())
+            output::remark(&format!("note: {error}; the films are drawings"));
+            Ok(None)
         }
-        Err(error) => Err(error.into()),
+        rendered => rendered.map(Some),
     }
 }

@@ -22,10 +22,27 @@ fn every_problem_is_seen() {
         assert!(sandbox.run("play run --episodes 1").status.success());
         let film = String::from_utf8(sandbox.read("run/play/film.html")).unwrap();
         assert!(film.contains("<figure class=\"player\"") && film.contains(&format!("episode 0: {told}")), "{problem}");
+        let scene = String::from_utf8(sandbox.read("run/play/scene.html")).unwrap();
+        assert!(scene.contains("\"form\":\"") && scene.contains(&format!("\"about\":\"{told}")), "{problem}");
+        assert!(sandbox.read("run/play/episode-0.gif").starts_with(b"GIF89a"), "{problem}");
+        assert!(sandbox.path("run/play/sheet.png").is_file(), "{problem}");
         assert!(sandbox.run("report run").status.success());
         let report = String::from_utf8(sandbox.read("run/report.html")).unwrap();
         assert!(report.contains("The best and the worst") && report.contains(told), "{problem}");
     }
+}
+
+#[test]
+fn pages_alone_and_films_without_their_encoder() {
+    let sandbox = Sandbox::with_run("play-formats");
+    assert!(sandbox.run("play run --episodes 1 --html --out pages").status.success());
+    let files = std::fs::read_dir(sandbox.path("pages")).unwrap().map(|file| file.unwrap().file_name());
+    let mut files: Vec<_> = files.collect();
+    files.sort();
+    assert_eq!(files, ["film.html", "scene.html"]);
+    insta::assert_snapshot!(
+        sandbox.transcript(&["play run --episodes 1 --format webm", "play run --html --format gif"])
+    );
 }
 
 /// A robot from a model: trained, filmed, judged with a faster law, and asked for tendons that it does not have.
@@ -55,7 +72,7 @@ fn a_robot_from_a_model_is_seen_and_judged() {
     }
 }
 
-/// With EGL there are GIFs as well; without it that is said, and the film is there all the same.
+/// With EGL its films are rendered; without it that is said, and they are drawn.
 #[cfg(feature = "mujoco")]
 #[test]
 fn a_hand_is_filmed_with_and_without_a_renderer() {
@@ -70,5 +87,6 @@ fn a_hand_is_filmed_with_and_without_a_renderer() {
     assert!(output.status.success(), "{remarks}");
     let film = String::from_utf8(sandbox.read("run/play/film.html")).unwrap();
     assert!(told.contains("film.html") && film.contains("above the floor"));
-    assert!(sandbox.path("run/play/sheet.png").is_file() != remarks.contains("note: "), "{remarks}");
+    assert!(sandbox.path("run/play/sheet.png").is_file() && told.contains("episode-0-sphere.gif"), "{told}");
+    assert!(remarks.is_empty() || remarks.contains("the films are drawings"), "{remarks}");
 }

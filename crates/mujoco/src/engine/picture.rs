@@ -11,8 +11,8 @@ use super::{CameraId, Simulation};
 pub enum PictureError {
     /// No OpenGL context can be had.
     #[error(
-        "no picture can be drawn: {0}; drawing needs EGL and an OpenGL driver, which need no screen and no graphics card: on \
-         Debian and Ubuntu install libegl1, libegl-mesa0 and libgl1-mesa-dri"
+        "no picture can be rendered: {0}; rendering needs EGL and an OpenGL driver, which need no screen and no graphics card: \
+         on Debian and Ubuntu install libegl1, libegl-mesa0 and libgl1-mesa-dri"
     )]
     NoContext(String),
     /// A side that is none, or more than the model makes room for.

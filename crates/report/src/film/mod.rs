@@ -6,13 +6,15 @@ mod order;
 mod outline;
 mod reel;
 mod set;
+mod sketch;
 
 use hwasp_scene::{LOOKED_THROUGH, Moment, Studio, Take};
 use hwasp_training::{Assembly, EvaluateError, World};
 use maud::{Markup, PreEscaped, html};
 
 use self::reel::{Frame, Reel};
-use self::set::Set;
+pub(crate) use self::set::Set;
+pub(crate) use self::sketch::sketch;
 use crate::words::{decimal, decimals};
 
 /// Stills of an episode.
@@ -69,7 +71,7 @@ fn told_of_all(takes: &[Take], seed: u64) -> String {
     let which = match takes {
         [one] => format!("Held-out episode {}", one.index),
         [best, worst] if best.name == "best" && worst.name == "worst" => {
-            format!("The best and the worst, by return, of the first {} held-out episodes", LOOKED_THROUGH)
+            format!("The best and the worst, by return, of the first {LOOKED_THROUGH} held-out episodes")
         }
         [first, ..] if !first.name.is_empty() => "The first held-out episode of each kind".to_owned(),
         _ => "Held-out episodes".to_owned(),
@@ -83,7 +85,7 @@ fn length(metres: f64) -> String {
 
 /// How it ended, for tasks that know success: a word and its class.
 fn verdict(take: &Take) -> Option<&'static str> {
-    take.result.outcome.as_ref().map(|outcome| if outcome.success { "success" } else { "failure" })
+    take.success().map(|success| if success { "success" } else { "failure" })
 }
 
 /// What an episode is called.
@@ -105,7 +107,7 @@ fn told_of_take(take: &Take) -> String {
 }
 
 /// What is to be known of a moment.
-fn told_of_moment(moment: &Moment) -> String {
+pub(crate) fn told_of_moment(moment: &Moment) -> String {
     if moment.sight.told.is_empty() {
         format!("return {}", decimal(moment.worth, decimals(moment.worth)))
     } else {
@@ -117,8 +119,6 @@ fn told_of_moment(moment: &Moment) -> String {
 fn player(set: &Set, takes: &[Take], each: usize) -> Markup {
     let reels: Vec<Reel> = takes.iter().enumerate().map(|take| Reel::new(set, take, each)).collect();
     let data = serde_json::to_string(&reels).expect("texts and finite numbers can be written as JSON");
-    // Nothing in it ends the script.
-    let data = data.replace('<', "\\u003c");
     let names = ["player", "Episodes, drawn as a film", "The moments beside it show the same as stills."];
     html! {
         figure.player hidden {
@@ -135,7 +135,7 @@ fn player(set: &Set, takes: &[Take], each: usize) -> Markup {
                 label { span.hidden { "Time" } input type="range" min="0" max="0" value="0" step="1"; }
                 span.clock { "0.00 s" }
             }
-            script type="application/json" { (PreEscaped(data)) }
+            script type="application/json" { (PreEscaped(hwasp_scene::data(&data))) }
         }
     }
 }
@@ -165,7 +165,7 @@ fn stills(set: &Set, (number, take): (usize, &Take)) -> Markup {
 
 /// Moments for stills, with what happens there: start, the first of everything of note, end; evenly spread ones where there are
 /// fewer.
-fn chosen(take: &Take) -> Vec<(usize, &str)> {
+pub(crate) fn chosen(take: &Take) -> Vec<(usize, &str)> {
     let last = take.moments.len() - 1;
     let mut chosen = vec![(0, "start")];
     chosen.extend((last > 0).then_some((last, "end")));
@@ -191,10 +191,21 @@ fn chosen(take: &Take) -> Vec<(usize, &str)> {
 }
 
 /// A picture with its name; `id` is its own. That of a `film` has all its slots, numbered, for the paths to come.
-fn drawing(set: &Set, (number, take, i): (usize, &Take, usize), film: bool, [id, title, about]: [&str; 3]) -> Markup {
+fn drawing(set: &Set, take: (usize, &Take, usize), film: bool, [id, title, about]: [&str; 3]) -> Markup {
+    let [width, height] = set.size;
+    html! {
+        svg.sketch viewBox={ "0 0 " (width) " " (height) } role="img" aria-labelledby={ (id) "-t " (id) "-d" } {
+            title id={ (id) "-t" } { (title) }
+            desc id={ (id) "-d" } { (about) }
+            (shapes(set, take, film))
+        }
+    }
+}
+
+/// What is drawn of a moment of an episode.
+fn shapes(set: &Set, (number, take, i): (usize, &Take, usize), film: bool) -> Markup {
     let sight = &take.moments[i].sight;
     let frame = Frame::new(set, (number, i), sight);
-    let [width, height] = set.size;
     let [left, top] = frame.corner.map(|at| -at);
     let solids = sight.solids.len();
     let colour = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
@@ -209,16 +220,12 @@ fn drawing(set: &Set, (number, take, i): (usize, &Take, usize), film: bool, [id,
         }
     };
     html! {
-        svg.sketch viewBox={ "0 0 " (width) " " (height) } role="img" aria-labelledby={ (id) "-t " (id) "-d" } {
-            title id={ (id) "-t" } { (title) }
-            desc id={ (id) "-d" } { (about) }
-            g.camera transform={ "translate(" (left) " " (top) ")" } {
-                @for [outline, lines] in &set.ground {
-                    @if !outline.is_empty() { path.floor d=(outline) {} }
-                    path.grid d=(lines) {}
-                }
-                g.solids { @for &i in &frame.order { (slot(i)) } }
+        g.camera transform={ "translate(" (left) " " (top) ")" } {
+            @for [outline, lines] in &set.ground {
+                @if !outline.is_empty() { path.floor d=(outline) {} }
+                path.grid d=(lines) {}
             }
+            g.solids { @for &i in &frame.order { (slot(i)) } }
         }
     }
 }

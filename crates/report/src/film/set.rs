@@ -26,7 +26,7 @@ const SMOOTH: usize = 4;
 const MOST_LINES: f64 = 60.0;
 
 /// What all pictures of some episodes have in common.
-pub(super) struct Set {
+pub(crate) struct Set {
     pub(super) eye: Eye,
     /// Width and height of the picture.
     pub(super) size: [f64; 2],
@@ -117,7 +117,7 @@ impl Window {
 
 impl Set {
     /// For episodes of which each has a moment.
-    pub(super) fn new(takes: &[Take]) -> Self {
+    pub(crate) fn new(takes: &[Take]) -> Self {
         let eye = direction(takes);
         let areas = |take: &Take| -> Vec<Area> { (0..take.moments.len()).map(|i| area(&eye, take, i)).collect() };
         let areas: Vec<Vec<Area>> = takes.iter().map(areas).collect();

@@ -1,92 +1,88 @@
-//! Draws what was filmed, into files.
-
-use std::fs::{self, File};
-use std::io::{self, BufWriter};
-use std::path::{Path, PathBuf};
+//! Films of grasps that the engine renders.
 
 use hwasp_grasp::{Object, Stage, Still};
-use hwasp_mujoco::engine::Painter;
+use hwasp_mujoco::engine::{EditError, Painter};
 use hwasp_tasks::hand::names;
 use hwasp_training::Assembly;
 
 use super::film::grasp;
-use super::{Caption, Moment, Picture, PlayError, PlayOptions, Played, Row, Take, film, gif, label, moments, sheet};
+use super::shown::Shown;
+use super::{Caption, Grasped, Moment, Picture, PlayError, PlayOptions, Row, film, label, moments};
 
 /// Pictures a second, and what a step lasts, s.
 const RATE: usize = 20;
 const STEP: f64 = 0.01;
 /// Steps between pictures, so that films run at the speed of life.
 const EVERY: usize = 100 / RATE;
-/// How long a picture is shown, and the last one, hundredths of a second.
-const DELAYS: [u16; 2] = [100 / RATE as u16, 150];
 
-/// Runs, films and draws the episodes of `options` into a folder: `episode-INDEX-SHAPE.gif` for each, 20 pictures a second
-/// in real time, and all of them on `sheet.png` under `title`. Tells of each film that is written. Files of these names are
-/// replaced. Returns the sheet's path.
-pub fn play(
-    assembly: &Assembly,
-    params: &[f32],
-    options: &PlayOptions,
-    (title, out): (&str, &Path),
-    told: &mut dyn FnMut(&Played),
-) -> Result<PathBuf, PlayError> {
-    let grasp = grasp(assembly, None)?;
-    let mut stage = Stage::new(&grasp);
-    let camera = stage.simulation().camera(names::CAMERA)?;
-    let mut painter = Painter::new(stage.simulation(), camera, options.size)?;
-    fs::create_dir_all(out).map_err(|source| PlayError::Write { path: out.to_owned(), source })?;
-    let mut rows = Vec::new();
-    for take in film(assembly, params, options)? {
-        let mut scene = Scene { stage: &mut stage, painter: &mut painter, take: &take, options };
-        scene.begin()?;
-        let path = out.join(format!("episode-{}-{}.gif", take.index, take.object.kind.name()));
-        let pictures = scene.film()?;
-        save(&path, |file| gif::write(BufWriter::new(file), &pictures, DELAYS))?;
-        rows.push(scene.row()?);
-        told(&Played { index: take.index, shape: take.object.kind.name(), success: take.success, path });
-    }
-    let path = out.join("sheet.png");
-    let png = sheet(title, &rows)?;
-    save(&path, |mut file| io::Write::write_all(&mut file, &png))?;
-    Ok(path)
+/// What renders.
+pub(super) struct Renderer {
+    stage: Stage,
+    painter: Painter,
 }
 
-fn save(path: &Path, write: impl FnOnce(File) -> io::Result<()>) -> Result<(), PlayError> {
-    File::create(path).and_then(write).map_err(|source| PlayError::Write { path: path.to_owned(), source })
+impl Renderer {
+    /// For the grasps of an experiment.
+    pub(super) fn new(assembly: &Assembly, size: [usize; 2]) -> Result<Self, PlayError> {
+        let stage = Stage::new(&grasp(assembly, None)?);
+        let camera = stage.simulation().camera(names::CAMERA)?;
+        let painter = Painter::new(stage.simulation(), camera, size)?;
+        Ok(Self { stage, painter })
+    }
+
+    /// Runs, films and renders the episodes of `options`, one after the other.
+    pub(super) fn grasps<'a>(
+        &'a mut self,
+        assembly: &Assembly,
+        params: &[f32],
+        options: &'a PlayOptions,
+    ) -> Result<impl Iterator<Item = Result<Shown, PlayError>> + 'a, PlayError> {
+        let takes = film(assembly, params, options)?;
+        Ok(takes.into_iter().map(|take| Scene { renderer: &mut *self, take: &take, options }.shown()))
+    }
 }
 
 /// An episode in front of the camera.
 struct Scene<'a> {
-    stage: &'a mut Stage,
-    painter: &'a mut Painter,
-    take: &'a Take,
+    renderer: &'a mut Renderer,
+    take: &'a Grasped,
     options: &'a PlayOptions,
 }
 
 impl Scene<'_> {
-    fn begin(&mut self) -> Result<(), PlayError> {
-        let index = self.take.index;
-        self.stage.set(&self.take.object).map_err(|error| PlayError::Pose { index, what: error.to_string() })
+    fn shown(mut self) -> Result<Shown, PlayError> {
+        let Grasped { index, object, success, .. } = self.take;
+        let failed = |error: EditError| PlayError::Pose { index: *index, what: error.to_string() };
+        self.renderer.stage.set(object).map_err(failed)?;
+        Ok(Shown {
+            index: *index,
+            kind: object.kind.name().to_owned(),
+            success: Some(*success),
+            pictures: self.film()?,
+            pace: 1.0 / RATE as f64,
+            row: self.row()?,
+        })
     }
 
     fn picture(&mut self, still: &Still) -> Result<Picture, PlayError> {
         let index = self.take.index;
-        self.stage.pose(still).map_err(|error| PlayError::Pose { index, what: error.to_string() })?;
+        let Renderer { stage, painter } = self.renderer;
+        stage.pose(still).map_err(|error| PlayError::Pose { index, what: error.to_string() })?;
         let [width, height] = self.options.size;
-        let rgb = self.painter.draw(self.stage.simulation_mut())?.to_vec();
+        let rgb = painter.draw(stage.simulation_mut())?.to_vec();
         Ok(Picture { width, height, rgb })
     }
 
     /// The labelled pictures of the whole episode, the last step among them.
     fn film(&mut self) -> Result<Vec<Picture>, PlayError> {
-        let Take { index, object, success, film, .. } = self.take;
+        let Grasped { index, object, success, film, .. } = self.take;
         let end = film.stills.len() - 1;
         let steps: Vec<usize> = (0..end).step_by(EVERY).chain([end]).collect();
         let drawn: Result<Vec<_>, PlayError> = steps.iter().map(|&step| self.picture(&film.stills[step])).collect();
         let native = if self.options.native { " · native tendons" } else { "" };
         let caption = |&step: &usize| Caption {
             object: format!("{} · {:.0} g{native}", object.kind.name(), 1e3 * object.mass),
-            success: *success,
+            success: Some(*success),
             time: format!("{:.2} s · step {step}/{end}", STEP * step as f64),
             episode: format!("seed {} · episode {index}", self.options.seed),
         };
@@ -96,13 +92,13 @@ impl Scene<'_> {
 
     /// Its row on the sheet.
     fn row(&mut self) -> Result<Row, PlayError> {
-        let Take { index, object, success, film, .. } = self.take;
+        let Grasped { index, object, success, film, .. } = self.take;
         let mut cells = Vec::new();
         for Moment { step, name } in moments(&film.stills) {
             let gap = if name.is_empty() { "" } else { " · " };
             cells.push((self.picture(&film.stills[step])?, format!("{name}{gap}{:.2} s", STEP * step as f64)));
         }
-        Ok(Row { lines: lines(*index, object), success: *success, cells })
+        Ok(Row { lines: lines(*index, object), success: Some(*success), cells })
     }
 }
 

@@ -10,7 +10,7 @@ use super::{PlayError, PlayOptions, check};
 
 /// One episode on film.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Take {
+pub struct Grasped {
     /// Its index among the held-out episodes.
     pub index: u64,
     /// What was grasped.
@@ -35,7 +35,7 @@ pub(super) fn grasp(assembly: &Assembly, native: Option<&[f64]>) -> Result<Grasp
 
 /// Runs and films the episodes of `options`, with the controller in `params` on the design in them: as built and by the law,
 /// or with the engine's own tendons.
-pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Result<Vec<Take>, PlayError> {
+pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Result<Vec<Grasped>, PlayError> {
     let trained = assembly.policy.design(params);
     let design = if options.native { trained } else { assembly.worlds.training.law.as_built(&trained) };
     let grasp = grasp(assembly, options.native.then_some(&design[..]))?;
@@ -61,7 +61,7 @@ pub fn film(assembly: &Assembly, params: &[f32], options: &PlayOptions) -> Resul
         let outcome = batch.episodes.first().and_then(|episode| episode.outcome.clone());
         let (outcome, object) = outcome.zip(film.object.clone()).ok_or_else(missing)?;
         let undiscounted_return = *batch.returns(1.0).first().expect("an episode with an outcome has a return");
-        Ok(Take { index, object, success: outcome.success, undiscounted_return, film })
+        Ok(Grasped { index, object, success: outcome.success, undiscounted_return, film })
     };
     (options.first..options.first.saturating_add(options.episodes)).map(take).collect()
 }

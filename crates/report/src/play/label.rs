@@ -14,8 +14,8 @@ pub(super) fn verdict(success: bool) -> (&'static str, &'static str) {
 pub struct Caption {
     /// Above on the left: what is grasped.
     pub object: String,
-    /// Above on the right: how it ends.
-    pub success: bool,
+    /// Above on the right: how it ends, where that is known.
+    pub success: Option<bool>,
     /// Below on the left: when.
     pub time: String,
     /// Below on the right: which episode.
@@ -37,18 +37,40 @@ pub fn label<'a>(pictures: impl IntoIterator<Item = (&'a Picture, &'a Caption)>)
     pictures.into_iter().map(labelled).collect()
 }
 
+/// Height of the texts on a picture so wide, pixels.
+fn text(width: usize) -> f64 {
+    (width as f64 * TEXT).max(10.0)
+}
+
+/// Height of the bands, pixels.
+pub(super) fn band(width: usize) -> f64 {
+    (1.7 * text(width)).round()
+}
+
+/// As many of a text's parts, between commas, as find room beside the verdict.
+pub(super) fn fitting(mut object: &str, width: usize) -> String {
+    let letters = (1.6 * width as f64 / text(width)) as usize;
+    while object.chars().count() > letters
+        && let Some((shorter, _)) = object.rsplit_once(", ")
+    {
+        object = shorter;
+    }
+    object.to_owned()
+}
+
 fn texts(picture: &Picture, caption: &Caption) -> String {
     let (width, height) = (picture.width as f64, picture.height as f64);
-    let size = (width * TEXT).max(10.0);
-    let (band, margin) = ((1.7 * size).round(), 0.6 * size);
+    let (size, band) = (text(picture.width), band(picture.width));
+    let margin = 0.6 * size;
     let mut page = Svg::transparent(width, height, "");
     for y in [0.0, height - band] {
         page.rectangle((0.0, y), (width, band), "fill=\"#ffffff\" fill-opacity=\"0.78\"");
     }
     let (above, below) = (0.5 * band + 0.36 * size, height - 0.5 * band + 0.36 * size);
-    let (word, colour) = verdict(caption.success);
     page.text((margin, above), size, Anchor::Start, "#1b1f24", &caption.object);
-    page.text((width - margin, above), size, Anchor::End, colour, word);
+    if let Some((word, colour)) = caption.success.map(verdict) {
+        page.text((width - margin, above), size, Anchor::End, colour, word);
+    }
     page.text((margin, below), size, Anchor::Start, "#1b1f24", &caption.time);
     page.text((width - margin, below), size, Anchor::End, "#1b1f24", &caption.episode);
     page.finish()

@@ -1,35 +1,36 @@
-//! Episodes to look at: of any world that shows itself, drawn as a page for a browser; held-out grasps of a saved run as films (GIF)
-//! and on one sheet (PNG), too.
+//! Episodes to look at, of any world that shows itself: as pages for a browser, in three dimensions and as drawings; and as films
+//! (GIF, MP4, WebM) with one sheet of stills (PNG).
 //!
-//! `film` runs the episodes that [`evaluate`](hwasp_training::evaluate()) runs, to the bit, and keeps their poses. Only `play`
-//! renders them, in builds with the feature `renderer`.
+//! They are the episodes that [`evaluate`](hwasp_training::evaluate()) runs, to the bit. Films are [drawn](sketch); grasps can be
+//! [rendered](render) by the engine as well, in builds with the feature `renderer`.
 
 mod canvas;
 #[cfg(feature = "renderer")]
 mod draw;
 #[cfg(feature = "mujoco")]
 mod film;
-#[cfg(feature = "renderer")]
 mod gif;
 mod html;
 mod label;
 #[cfg(feature = "mujoco")]
 mod moments;
 mod sheet;
+mod shown;
+mod sketches;
+mod video;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use hwasp_plot::PlotError;
+use hwasp_scene::Take;
 use hwasp_tasks::grasp::GraspTaskSettings;
 use hwasp_training::{AssembleError, Assembly, EvaluateError};
 
 pub use canvas::Picture;
-#[cfg(feature = "renderer")]
-pub use draw::play;
 #[cfg(feature = "mujoco")]
-pub use film::{Take, film};
+pub use film::{Grasped, film};
 pub use html::{film_page, record, scene_page};
 pub use label::{Caption, label};
 #[cfg(feature = "mujoco")]
@@ -56,20 +57,68 @@ pub struct PlayOptions {
     pub size: [usize; 2],
 }
 
+/// What a film is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Shown by everything, 256 colours.
+    Gif,
+    /// By the program `ffmpeg`.
+    Mp4,
+    /// By the program `ffmpeg`.
+    Webm,
+}
+
+impl Format {
+    /// How the names of its files end.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Gif => "gif",
+            Self::Mp4 => "mp4",
+            Self::Webm => "webm",
+        }
+    }
+}
+
 /// An episode and the film of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Played {
     /// The episode's index.
     pub index: u64,
-    /// What was grasped.
-    pub shape: &'static str,
-    /// Whether it succeeded.
-    pub success: bool,
+    /// What kind it is of, the shape that was grasped for one; may be empty.
+    pub kind: String,
+    /// Whether it succeeded, where its task knows.
+    pub success: Option<bool>,
     /// The film.
     pub path: PathBuf,
 }
 
-/// Whether the experiment has episodes to look at: that it is about grasps.
+/// Draws filmed episodes into a folder: `episode-INDEX-KIND.gif` for each, in real time, and all of them on `sheet.png` under
+/// `title`. Tells of each film that is written. Files of these names are replaced. Returns the sheet's path.
+pub fn sketch(
+    takes: &[Take],
+    options: &PlayOptions,
+    format: Format,
+    place: (&str, &Path),
+    told: &mut dyn FnMut(&Played),
+) -> Result<PathBuf, PlayError> {
+    shown::write(sketches::sketches(takes, options), format, place, told)
+}
+
+/// The same of grasps, which it runs and has the engine render.
+#[cfg(feature = "renderer")]
+pub fn render(
+    assembly: &Assembly,
+    params: &[f32],
+    options: &PlayOptions,
+    format: Format,
+    place: (&str, &Path),
+    told: &mut dyn FnMut(&Played),
+) -> Result<PathBuf, PlayError> {
+    let mut renderer = draw::Renderer::new(assembly, options.size)?;
+    shown::write(renderer.grasps(assembly, params, options)?, format, place, told)
+}
+
+/// Whether the experiment is about grasps.
 pub fn check(assembly: &Assembly) -> Result<&GraspTaskSettings, PlayError> {
     let task = &assembly.experiment().task;
     task.settings().ok_or_else(|| PlayError::NoGrasp { problem: task.name().to_owned() })
@@ -123,6 +172,17 @@ pub enum PlayError {
     /// A text or a sheet cannot be drawn.
     #[error(transparent)]
     Plot(#[from] PlotError),
+    /// MP4 and WebM without the program that makes them.
+    #[error("MP4 and WebM are made by the program `ffmpeg`, which is not on the PATH")]
+    NoEncoder,
+    /// The program that makes MP4 and WebM gave up.
+    #[error("`{}` cannot be made by ffmpeg: {what}", path.display())]
+    Encode {
+        /// The film.
+        path: PathBuf,
+        /// What it said.
+        what: String,
+    },
     /// The file system.
     #[error("`{}` cannot be written: {source}", path.display())]
     Write {

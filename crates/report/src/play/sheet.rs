@@ -10,8 +10,8 @@ use super::label::verdict;
 pub struct Row {
     /// On the left, line by line; the first is the heading.
     pub lines: Vec<String>,
-    /// Written below them.
-    pub success: bool,
+    /// Written below them, where it is known.
+    pub success: Option<bool>,
     /// Pictures, all of one size, and what stands below each.
     pub cells: Vec<(Picture, String)>,
 }
@@ -51,8 +51,9 @@ pub fn sheet(title: &str, rows: &[Row]) -> Result<Vec<u8>, PlotError> {
             let (size, ink) = if n == 0 { (1.15 * TEXT, INK) } else { (TEXT, "#4a5058") };
             page.text((margin, line(n)), size, Anchor::Start, ink, text);
         }
-        let (word, colour) = verdict(row.success);
-        page.text((margin, line(row.lines.len())), 1.15 * TEXT, Anchor::Start, colour, word);
+        if let Some((word, colour)) = row.success.map(verdict) {
+            page.text((margin, line(row.lines.len())), 1.15 * TEXT, Anchor::Start, colour, word);
+        }
     }
     canvas.draw(&page.finish(), &Letters::new())?;
     canvas.png()

@@ -124,8 +124,11 @@ async function check() {
   await wait("two episodes", () => document.querySelectorAll("#stages.two canvas").length === 2);
   await wait("what it costs", () => /difference/.test(document.querySelector("#cost table")?.textContent));
   await plays("the two episodes play");
+  // What is looked at stands still meanwhile.
+  await page.click("#follow");
   await shoot("what-if");
   await views(page, { media, shoot, name: "what-if" });
+  await page.click("#follow");
   await page.click("#back");
   await wait("one episode again", () => document.querySelectorAll("#stages canvas").length === 1);
 

@@ -5,6 +5,7 @@
 //! and requests that a browser makes for another site are refused. Where the server can be reached from other machines, data
 //! need a token besides.
 
+use std::fmt::Write;
 use std::net::{IpAddr, SocketAddr};
 
 use hyper::header::{AUTHORIZATION, HOST, HeaderMap, HeaderName, ORIGIN};
@@ -108,7 +109,10 @@ fn alike(a: &[u8], b: &[u8]) -> bool {
 fn token() -> Result<String, getrandom::Error> {
     let mut bytes = [0; TOKEN_BYTES];
     getrandom::fill(&mut bytes)?;
-    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
 }
 
 #[cfg(test)]

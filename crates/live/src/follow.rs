@@ -151,7 +151,7 @@ struct Column<'a> {
 #[derive(Debug, Serialize)]
 struct Group<'a> {
     #[serde(flatten)]
-    group: &'a DesignGroup,
+    about: &'a DesignGroup,
     /// The newest total, SI.
     total: Option<f64>,
     /// Single values, SI, where they are known.
@@ -295,7 +295,7 @@ impl Follower {
             let built = summary.and_then(|summary| summary.design.get(&group.name));
             let total = curve.last.as_ref().and_then(|row| row.design_totals.get(i).copied());
             Group {
-                group,
+                about: group,
                 total: built.map(|built| built.total).or(total),
                 values: built.map(|built| &built.values[..]),
             }

@@ -32,7 +32,7 @@ const LONGEST_HEAD: usize = 32 << 10;
 /// How long a client may take for the head of a request.
 const HEAD_TIME: Duration = Duration::from_secs(5);
 /// How long a connection is used, and how long its last answer may take then.
-const CONNECTION_TIME: Duration = Duration::from_secs(60);
+const CONNECTION_TIME: Duration = Duration::from_mins(1);
 /// Threads that read run folders.
 const READERS: usize = 2;
 

@@ -150,7 +150,7 @@ fn params(saved: &SavedRun, policy: Policy) -> Result<(Vec<f32>, Option<u64>), R
             for _ in 1..TRIES {
                 match found {
                     Err(RunError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
-                        found = saved.found()
+                        found = saved.found();
                     }
                     _ => break,
                 }
@@ -266,6 +266,7 @@ fn changed(assembly: &Assembly, design: &[f64], values: &[(String, f64)]) -> Res
     Ok(changed)
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "as `map_err` hands it over")]
 fn failed(error: EvaluateError) -> Answer {
     Answer::fault(StatusCode::CONFLICT, &format!("no episode could be simulated: {error}"))
 }

@@ -28,3 +28,5 @@ mod report;
 mod resume;
 mod runs;
 mod sandbox;
+#[cfg(unix)]
+mod watch;

@@ -109,14 +109,11 @@ pub(crate) fn send(address: SocketAddr, bytes: &[u8], patience: Duration) -> Opt
 
 /// Asks with these headers besides the usual ones.
 pub(crate) fn ask(server: &Server, method: &str, target: &str, headers: &[(&str, &str)]) -> Answer {
-    let mut request = format!("{method} {target} HTTP/1.1\r\nConnection: close\r\n");
-    if headers.iter().all(|(name, _)| *name != "Host") {
-        request += "Host: localhost\r\n";
-    }
-    for (name, value) in headers {
-        request += &format!("{name}: {value}\r\n");
-    }
-    send(server.address(), format!("{request}\r\n").as_bytes(), PATIENCE).unwrap()
+    let usual = [("Connection", "close"), ("Host", "localhost")];
+    let usual = usual.iter().filter(|(name, _)| headers.iter().all(|(given, _)| given != name));
+    let lines: Vec<String> = usual.chain(headers).map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+    let request = format!("{method} {target} HTTP/1.1\r\n{}\r\n", lines.concat());
+    send(server.address(), request.as_bytes(), PATIENCE).unwrap()
 }
 
 pub(crate) fn get(server: &Server, target: &str) -> Answer {

@@ -18,7 +18,7 @@ fn a_finished_run_is_told_in_full() {
     let folder = empty("finished");
     trained(&folder.join("run"));
     fs::write(folder.join("run/train.log"), "first\nlast \u{202e}\u{1b}[31mred\n").unwrap();
-    let server = serve(&[folder.clone()]);
+    let server = serve(std::slice::from_ref(&folder));
     let list = get(&server, "/api/runs").json();
     let run = of(&list, 0);
     assert_eq!(
@@ -50,7 +50,7 @@ fn a_finished_run_is_told_in_full() {
 fn nothing_comes_where_nothing_is_new() {
     let folder = empty("tags");
     trained(&folder.join("run"));
-    let server = serve(&[folder.clone()]);
+    let server = serve(std::slice::from_ref(&folder));
     for path in ["/api/runs", "/api/runs/0"] {
         let tag = get(&server, path).header("etag").unwrap().to_owned();
         let again = ask(&server, "GET", path, &[("If-None-Match", &tag)]);
@@ -71,7 +71,7 @@ fn a_curve_grows_row_by_row_and_half_a_row_waits() {
     let text = fs::read_to_string(folder.join("whole/metrics.csv")).unwrap();
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     drop(begin(&run, &experiment(), Keeping::default()));
-    let server = serve(&[run.clone()]);
+    let server = serve(std::slice::from_ref(&run));
     let points = |value: &Value| value["curve"]["env_steps"].as_array().unwrap().len();
     assert_eq!(points(&get(&server, "/api/runs/0").json()), 0);
     fs::write(run.join("metrics.csv"), &lines[0][..10]).unwrap();
@@ -115,7 +115,7 @@ fn states_are_those_of_the_folder() {
     assert_eq!((&of(&list, 0)["state"], list["waiting"].as_array().unwrap().len()), (&json!("training"), 1));
     // Nobody holds it any more, and the last thing that was written is old.
     drop(held);
-    let old = std::time::SystemTime::now() - Duration::from_secs(60);
+    let old = std::time::SystemTime::now() - Duration::from_mins(1);
     let file = fs::File::options().write(true).open(run.join("experiment.toml")).unwrap();
     file.set_modified(old).unwrap();
     wait(&server, "/api/runs", |list| of(list, 0)["state"] == json!("interrupted"));
@@ -136,7 +136,7 @@ fn runs_that_are_damaged_are_told_and_the_rest_is_shown() {
     fs::write(run.join("summary.json"), "{").unwrap();
     let text = fs::read_to_string(run.join("experiment.toml")).unwrap();
     fs::write(run.join("experiment.toml"), text.replace("problem = \"reach\"", "problem = \"of-others\"")).unwrap();
-    let server = serve(&[run.clone()]);
+    let server = serve(std::slice::from_ref(&run));
     let detail = get(&server, "/api/runs/0").json();
     assert_eq!((&detail["problem"], &detail["simulates"]), (&json!("of-others"), &json!(false)));
     assert_eq!(detail["faults"].as_array().unwrap().len(), 2, "{}", detail["faults"]);
@@ -159,7 +159,7 @@ fn episodes_are_those_of_the_newest_controller() {
     let run = folder.join("run");
     let experiment = experiment();
     let held = begin(&run, &experiment, Keeping::default());
-    let server = serve(&[run.clone()]);
+    let server = serve(std::slice::from_ref(&run));
     let first = get(&server, "/api/runs/0/episode").json();
     assert_eq!((&first["policy"], &first["env_steps"]), (&json!("first"), &json!(0)));
     let assembly = Assembly::new(&experiment).unwrap();
@@ -177,7 +177,7 @@ fn another_design_is_simulated_and_what_it_costs_is_told() {
     let folder = empty("what-if");
     let run = folder.join("run");
     trained(&run);
-    let server = serve(&[run.clone()]);
+    let server = serve(std::slice::from_ref(&run));
     let detail = get(&server, "/api/runs/0").json();
     let group = &detail["design"][0];
     let (name, low, high) = (

@@ -62,7 +62,7 @@ fn links_do_not_lead_out_of_a_run_folder() {
         let _ = fs::remove_file(run.join(file));
         symlink(&secret, run.join(file)).unwrap();
     }
-    let server = serve(&[folder.clone()]);
+    let server = serve(std::slice::from_ref(&folder));
     for path in ["/api/runs", "/api/runs/0", "/api/runs/0/episode"] {
         let answer = get(&server, path);
         assert!(!answer.text().contains("secret\\n") && !answer.text().contains("the secret"), "{}", answer.text());

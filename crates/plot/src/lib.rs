@@ -1,4 +1,4 @@
-//! Pictures of runs: the discounted return and each design total against real environment steps or time.
+//! Pictures of runs: the return, the discounted return and each design total against real environment steps or time.
 //!
 //! A label with one run shows its return as logged (pale) and as a trailing mean (full). Runs that share a label, such as
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
@@ -30,16 +30,16 @@ mod trace;
 
 pub use bars::bars;
 pub use closing::{closing_panels, closing_plot};
-pub use curve::{Curve, RETURN, XAxis};
+pub use curve::{Curve, DISCOUNTED, RETURN, XAxis};
 pub use curves::{curve_panels, curves};
 pub use error::{LONGEST_WINDOW, MOST_PANELS, MOST_RUNS, PlotError};
 pub use graph::{Drawing, drawing, law_svg};
 pub use intervals::{IntervalRow, intervals};
-pub use options::{Band, PanelText, PlotOptions};
+pub use options::{Band, PanelText, PlotOptions, Theme};
 pub use output::{embedded_font, render_png, write_plot};
 pub use picture::{PanelPlot, PanelPlots, Plot};
 pub use run::{curves_svg, plot_options, saved_curve, saved_plot_options};
 pub use series::Note;
 pub use svg::{Anchor, Svg};
 pub use tornado::{TornadoRow, tornado_plot};
-pub use trace::trace;
+pub use trace::{trace, traces};

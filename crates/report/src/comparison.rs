@@ -261,7 +261,7 @@ fn curves(saved: &SavedComparison) -> Markup {
     let design = saved.cells.first().map(|cell| &cell.summary.design);
     let groups = || design.into_iter().flatten().map(|(name, group)| (name.as_str(), group));
     let drawn = |x_axis: XAxis, id: &str, against: &str| {
-        let of = |cell: &CellResult| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0);
+        let of = |cell: &CellResult| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0).judged();
         let mut runs: Vec<Curve> = saved.cells.iter().map(of).collect();
         if x_axis == XAxis::WallClock {
             for run in &mut runs {

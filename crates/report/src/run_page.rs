@@ -39,10 +39,12 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
         let label = label + &group.name;
         figures.push(figure(&label, shown.with_unit(group.group.total_as_built), best));
     }
-    let discounted = &evaluation.discounted_return;
-    let of = if discounted.interval.is_some() { "95 % interval " } else { "" };
-    let interval = format!("{of}{}", mean_interval(discounted, 1));
-    figures.push(figure("Discounted return", decimal(discounted.mean, 1), interval));
+    for (label, of) in
+        [("Return", &evaluation.undiscounted_return), ("Discounted return", &evaluation.discounted_return)]
+    {
+        let named = if of.interval.is_some() { "95 % interval " } else { "" };
+        figures.push(figure(label, decimal(of.mean, 1), format!("{named}{}", mean_interval(of, 1))));
+    }
     let parameters: usize = run.design.groups.iter().map(|group| group.position.len()).sum();
     let of = if parameters == 1 { "number of the body" } else { "numbers of the body" };
     figures.push(figure("Designed", parameters.to_string(), of.into()));

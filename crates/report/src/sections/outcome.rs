@@ -3,7 +3,7 @@
 use hwasp_plot::{IntervalRow, intervals};
 use hwasp_runs::text::grouped;
 use hwasp_training::stats::Interval;
-use hwasp_training::{Evaluation, SuccessRate};
+use hwasp_training::{Evaluation, MeanInterval, SuccessRate};
 use maud::{Markup, html};
 
 use crate::figure::{gallery, picture};
@@ -70,7 +70,9 @@ pub(crate) fn rate_row<'a>(label: &'a str, rate: &SuccessRate) -> IntervalRow<'a
 }
 
 fn returns(run: &Run, evaluation: &Evaluation) -> Markup {
-    let both = [("discounted", &evaluation.discounted_return), ("undiscounted", &evaluation.undiscounted_return)];
+    let row = |name: &str, figure: &MeanInterval| {
+        html! { tr { th scope="row" { (name) } td.n { (decimal(figure.mean, 2)) } td.n { (mean_interval(figure, 2)) } } }
+    };
     html! {
         h3 { "Return" }
         table {
@@ -79,22 +81,17 @@ fn returns(run: &Run, evaluation: &Evaluation) -> Markup {
                 tr { th scope="col" { "return" } th.n scope="col" { "mean" } th.n scope="col" { "interval" } }
             }
             tbody {
-                @for (name, figure) in both {
-                    tr {
-                        th scope="row" { (name) }
-                        td.n { (decimal(figure.mean, 2)) }
-                        td.n { (mean_interval(figure, 2)) }
-                    }
-                }
+                (row("return", &evaluation.undiscounted_return))
                 @for (term, mean) in &evaluation.terms {
-                    tr { th scope="row" { "undiscounted, of " (term) } td.n { (decimal(*mean, 2)) } td.n { "–" } }
+                    tr { th scope="row" { "return, of " (term) } td.n { (decimal(*mean, 2)) } td.n { "–" } }
                 }
+                (row("discounted return", &evaluation.discounted_return))
                 tr {
-                    th scope="row" { "discounted, median" }
+                    th scope="row" { "discounted return, median" }
                     td.n { (decimal(evaluation.median_discounted_return, 2)) } td.n { "–" }
                 }
                 tr {
-                    th scope="row" { "discounted, worst episode" }
+                    th scope="row" { "discounted return, worst episode" }
                     td.n { (decimal(evaluation.worst_discounted_return, 2)) } td.n { "–" }
                 }
             }

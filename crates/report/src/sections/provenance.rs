@@ -33,6 +33,9 @@ pub(crate) fn section(run: &Run) -> Section {
                     tr { th scope="row" { "of these, to polish the controller" } td { (grouped(steps)) } }
                 }
                 tr { th scope="row" { "time" } td { (duration(summary.wall_s)) ", " (grouped(summary.steps_per_s as u64)) " steps/s" } }
+                @if let Some(figure) = summary.training_return {
+                    tr { th scope="row" { "return at its end" } td { (decimal(figure, 2)) } }
+                }
                 @if let Some(figure) = summary.training_discounted_return {
                     tr { th scope="row" { "discounted return at its end" } td { (decimal(figure, 2)) } }
                 }

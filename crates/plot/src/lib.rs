@@ -4,6 +4,7 @@
 //! the seeds of one method on one experiment, are drawn as their interquartile mean with a band. Design totals are never
 //! smoothed. The picture is SVG text; a PNG is that same SVG drawn with an embedded font.
 //!
+//! [`views`] draws what shows itself from three sides, [`transmission`] that of a hand with the ways of its tendons.
 //! [`closing_plot`] draws the closing chart of a hand with the same panels, [`tornado_plot`] what errors of a design's parameters do.
 //! [`curve_panels`] draws each panel as a picture of its own, for pages that arrange them by the width of their reader's screen.
 
@@ -27,6 +28,8 @@ mod series;
 mod svg;
 mod tornado;
 mod trace;
+mod transmission;
+mod views;
 
 pub use bars::bars;
 pub use closing::{closing_panels, closing_plot};
@@ -43,3 +46,5 @@ pub use series::Note;
 pub use svg::{Anchor, Svg};
 pub use tornado::{TornadoRow, tornado_plot};
 pub use trace::{trace, traces};
+pub use transmission::transmission;
+pub use views::views;

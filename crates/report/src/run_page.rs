@@ -6,20 +6,25 @@ use hwasp_runs::{RunError, Summary};
 use crate::episode;
 use crate::page::{KeyFigure, Page};
 use crate::run::Run;
-use crate::sections::{curves, design, hand, law, outcome, overview, parts, provenance, tolerances};
+use crate::sections::provenance::begun;
+use crate::sections::{curves, design, files, hand, law, outcome, overview, parts, provenance, tolerances, verdict};
+use crate::trials::Played;
 use crate::words::{decimal, duration, mean_interval, percent, rate_interval};
 
 /// The report.
 pub(crate) fn page(run: &Run) -> Result<Page, RunError> {
-    let mut sections = vec![overview::section(run), episode::section(run)?, outcome::section(run)];
+    let played = Played::new(run)?;
+    let trials = played.as_ref().ok().map(|played| &played.trials);
+    let mut sections = vec![verdict::section(run, trials), overview::section(run, trials)];
+    sections.extend([episode::section(run, &played), outcome::section(run, trials)]);
     sections.extend([curves::section(run), design::section(run)]);
     if let Some(hand) = &run.design.hand {
-        sections.extend([hand::section(hand), parts::section(run)]);
+        sections.extend([hand::section(run, hand, played.as_ref().ok()), parts::section(run)]);
     }
     sections.push(tolerances::section(run));
     // A world may have no law: its design is in the model.
     sections.extend((!run.spec.task.built().training.env.effort.is_empty()).then(|| law::section(run)));
-    sections.push(provenance::section(run));
+    sections.extend([provenance::section(run), files::section(run)]);
     let (kind, lead) = ("Run", run.spec.description.clone());
     Ok(Page { title: run.title(), kind, lead, figures: key_figures(run), sections })
 }
@@ -49,5 +54,6 @@ fn key_figures(run: &Run) -> Vec<KeyFigure> {
     let of = if parameters == 1 { "number of the body" } else { "numbers of the body" };
     figures.push(figure("Designed", parameters.to_string(), of.into()));
     figures.push(figure("Simulator steps", grouped(*env_steps), format!("in {}", duration(*wall_s))));
+    figures.extend(run.provenance.as_ref().map(|provenance| begun("Trained", provenance)));
     figures
 }

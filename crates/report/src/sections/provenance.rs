@@ -6,15 +6,17 @@ use hwasp_runs::checkpoint::experiment_hash;
 use hwasp_runs::text::grouped;
 use maud::{Markup, html};
 
-use crate::page::Section;
+use crate::page::{KeyFigure, Section};
 use crate::run::Run;
 use crate::words::{date, decimal, duration, quoted};
 
 pub(crate) fn section(run: &Run) -> Section {
     let summary = &run.summary;
     let body = html! {
-        p { "The training again, to the same numbers on any number of threads:" }
-        (command(&format!("hwasp train {} --out again", quoted(&run.path.join(EXPERIMENT).to_string_lossy()))))
+        div.part {
+            p { "The training again, to the same numbers on any number of threads:" }
+            (command(&format!("hwasp train {} --out again", quoted(&run.path.join(EXPERIMENT).to_string_lossy()))))
+        }
         p {
             "Without the folder: save the text below as " code { (EXPERIMENT) }
             @if !run.spec.files().is_empty() {
@@ -57,6 +59,13 @@ pub(crate) fn section(run: &Run) -> Section {
     Section { id: "provenance", title: "Where it came from", body }
 }
 
+/// The day of the training, for those who have the page on paper.
+pub(crate) fn begun(label: &str, provenance: &Provenance) -> KeyFigure {
+    let when = date(provenance.started_unix_s);
+    let (day, time) = when.split_once(' ').unwrap_or((&when, ""));
+    KeyFigure { label: label.to_owned(), value: day.to_owned(), note: time.to_owned() }
+}
+
 /// A line to be typed.
 pub(crate) fn command(line: &str) -> Markup {
     html! { pre.command { code { (line) } } }
@@ -65,9 +74,11 @@ pub(crate) fn command(line: &str) -> Markup {
 /// What stands in the place of a file that a run folder has not yet.
 pub(crate) fn not_yet(what: &str, line: &str, then: &str) -> Markup {
     html! {
-        p { "This run has no " (what) " yet. What makes them:" }
-        (command(line))
-        p { "The report, made again, then shows " (then) "." }
+        div.part {
+            p { "This run has no " (what) " yet. What makes them:" }
+            (command(line))
+            p { "The report, made again, then shows " (then) "." }
+        }
     }
 }
 

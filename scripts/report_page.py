@@ -1,13 +1,14 @@
 """Checks pages that `hwasp report` made, as far as that goes without a browser: python3 scripts/report_page.py PAGE...
 
-Elements are closed in the order in which they were opened, ids are unique, links lead to one of them, headings skip no level,
-pictures have names, tables have captions and heads, nothing is loaded, and a page is no larger than 500 kB. In a browser
+Elements are closed in the order in which they were opened, ids are unique, links lead to one of them or to a file that is there,
+headings skip no level, pictures have names, tables have captions and heads, nothing is loaded, and a page is no larger than 500 kB. In a browser
 scripts/report_check.mjs looks at the rest.
 """
 
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 MOST_BYTES = 500_000
 VOID = {"meta", "br", "input", "link", "img", "hr"}
@@ -19,7 +20,7 @@ class Page(HTMLParser):
     def __init__(self):
         super().__init__(convert_charrefs=True)
         self.faults, self.open, self.ids, self.links, self.level = [], [], set(), [], 0
-        self.tables = []
+        self.tables, self.files = [], []
 
     def fault(self, text):
         self.faults.append(f"line {self.getpos()[0]}: {text}")
@@ -38,10 +39,10 @@ class Page(HTMLParser):
         for name, value in given.items():
             if name in LOADING or name.startswith("on"):
                 self.fault(f"<{tag} {name}>")
-            if "href" in name and not (value or "").startswith("#"):
-                self.fault(f"<{tag} {name}={value!r}> leads out of the page")
-            if "href" in name:
+            if "href" in name and (value or "").startswith("#"):
                 self.links.append(value[1:])
+            elif "href" in name:
+                self.files.append(value or "")
         name = given.get("id")
         if name is not None:
             if name in self.ids:
@@ -76,6 +77,10 @@ def check(path):
     if page.open:
         page.fault(f"never closed: {page.open}")
     page.faults += [f"no element is called {link!r}" for link in page.links if link not in page.ids]
+    for link in page.files:
+        file = path.parent / unquote(link)
+        if ":" in link or link.startswith("/") or not file.is_file():
+            page.faults.append(f"{link!r} leads to no file beside the page")
     if len(data) > MOST_BYTES:
         page.faults.append(f"{len(data)} bytes are more than {MOST_BYTES}")
     if b"@import" in data or b"url(" in data:

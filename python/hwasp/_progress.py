@@ -54,12 +54,13 @@ class _Watcher:
 
 
 def _words(row: dict[str, Any], total: int) -> str:
-    worth = row["discounted_return"]
-    worth = "no return" if worth != worth else f"return {worth:.1f}"
+    mean, discounted = row["return"], row["discounted_return"]
+    worth = "no return" if mean != mean else f"return {mean:.1f} (discounted {discounted:.1f})"
     rate = row["env_steps"] / max(row["wall_s"], 1e-9)
     left = max(total - row["env_steps"], 0) / max(rate, 1e-9)
-    known = ("iteration", "env_steps", "wall_s", "discounted_return", "return")
-    totals = [f"{k} {v:.4g}" for k, v in row.items() if k not in known and not k.startswith(("learner.", "reward."))]
+    known = ("iteration", "env_steps", "wall_s", "discounted_return", "return", "episodes", "episode_steps")
+    others = ("noise.", "learner.", "reward.")
+    totals = [f"{k} {v:.4g}" for k, v in row.items() if k not in known and not k.startswith(others)]
     return "  ".join([worth, *totals[:3], f"{rate / 1e3:.0f}k steps/s" if rate >= 1e4 else f"{rate:.0f} steps/s", f"{left:.0f} s left"])
 
 

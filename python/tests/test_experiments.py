@@ -107,6 +107,7 @@ def test_a_run_has_design_curve_policy_and_figures():
     [gear] = run.design.values()
     assert gear.unit == "" and gear.limits[0] < gear.values[0] < gear.limits[1] and "gear" in repr(run)
     metrics = run.metrics
+    assert (metrics["episodes"] > 0).all() and (metrics["episode_steps"] > 0).all() and (metrics["noise.command"] > 0).all()
     assert metrics["env_steps"][-1] == run.summary["env_steps"] and len(metrics["return"]) == len(metrics["learner.kl"])
     assert list(metrics.to_pandas().columns) == list(metrics)
     assert run.finished and (run.path / "experiment.toml").read_text().endswith(str(run.experiment))
@@ -257,4 +258,4 @@ def test_tensorboard_and_warnings_go_where_python_looks(caplog):
 def test_progress_is_shown_as_lines_where_there_is_no_terminal(capsys):
     reach().train("run")
     told = capsys.readouterr().err.splitlines()
-    assert told[0].startswith("training into run") and "return" in told[-1] and 10 < len(told) < 30
+    assert told[0].startswith("training into run") and "return" in told[-1] and "(discounted" in told[-1] and 10 < len(told) < 30

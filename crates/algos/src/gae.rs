@@ -43,6 +43,38 @@ pub struct Advantages {
     pub episode_return: Vec<f64>,
     /// The same less V of the episode's first state.
     pub episode_advantage: Vec<f64>,
+    /// How well the values foretold what they learn.
+    pub foresight: Foresight,
+}
+
+/// How well values foretold the targets that a value function learns next. The rewards are those that the learner sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Foresight {
+    /// Mean square of the error, reward².
+    pub value_loss: f64,
+    /// The share of the targets' variance that the values account for: 1 for perfect ones, 0 for ones that know no more than the
+    /// mean, and less for worse ones; NaN where the targets are all alike.
+    pub explained_variance: f64,
+}
+
+impl Foresight {
+    /// Of values before they learn these targets, one for one.
+    pub fn of(values: &[f32], targets: &[f32]) -> Self {
+        let n = targets.len().max(1) as f64;
+        let (mut errors, mut squares, mut sum, mut sum_squares) = (0.0, 0.0, 0.0, 0.0);
+        // Of differences from one of them: squares of large numbers that are nearly alike lose what tells them apart.
+        let first = targets.first().map_or(0.0, |&target| f64::from(target));
+        for (&value, &target) in values.iter().zip(targets) {
+            let (error, target) = (f64::from(target) - f64::from(value), f64::from(target) - first);
+            errors += error;
+            squares += error * error;
+            sum += target;
+            sum_squares += target * target;
+        }
+        let variance = |sum: f64, squares: f64| (squares / n - (sum / n).powi(2)).max(0.0);
+        let (unexplained, all) = (variance(errors, squares), variance(sum, sum_squares));
+        Self { value_loss: squares / n, explained_variance: if all > 0.0 { 1.0 - unexplained / all } else { f64::NAN } }
+    }
 }
 
 /// The advantages of a batch of whole episodes.
@@ -64,6 +96,7 @@ pub fn advantages(
         discounted_return: vec![0.0; rows],
         episode_return: Vec::with_capacity(batch.episodes.len()),
         episode_advantage: Vec::with_capacity(batch.episodes.len()),
+        foresight: Foresight::default(),
     };
     for (episode, &last_value) in batch.episodes.iter().zip(last_values) {
         let bootstrap = episode.cut || (bootstrap_truncated && episode.end == End::Truncated);
@@ -168,6 +201,23 @@ mod tests {
         let got = advantages(&batch, &[0.0; 5], &[8.0, 99.0], (0.5, 1.0), false);
         assert_eq!(got.advantage, [3.75, 5.5, 7.0, 6.5, 5.0]);
         assert_eq!(got.advantage, got.discounted_return);
+    }
+
+    /// Targets 1, 2, 3 (variance 2/3). Values that are one too low all over explain all of it, the mean nothing of it, and values that
+    /// run the other way (errors -2, 0, 2) less than nothing.
+    #[test]
+    fn foresight_by_hand() {
+        let of = |values: [f32; 3]| Foresight::of(&values, &[1.0, 2.0, 3.0]);
+        assert_eq!(of([0.0, 1.0, 2.0]), Foresight { value_loss: 1.0, explained_variance: 1.0 });
+        let mean = of([2.0; 3]);
+        assert!((mean.value_loss - 2.0 / 3.0).abs() < 1e-12 && mean.explained_variance.abs() < 1e-12);
+        let contrary = of([3.0, 2.0, 1.0]);
+        assert!((contrary.value_loss - 8.0 / 3.0).abs() < 1e-12 && (contrary.explained_variance + 3.0).abs() < 1e-12);
+        let alike = Foresight::of(&[0.0; 2], &[5.0; 2]);
+        assert!(alike.value_loss == 25.0 && alike.explained_variance.is_nan());
+        // In single precision one part in 10⁷ is left of such targets.
+        let far = Foresight::of(&[1e6 + 1.0, 1e6 + 2.0], &[1e6 + 1.0, 1e6 + 2.0]);
+        assert_eq!((far.value_loss, far.explained_variance), (0.0, 1.0));
     }
 
     #[test]

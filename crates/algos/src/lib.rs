@@ -25,7 +25,7 @@ mod trpo;
 pub use adam::{Adam, AdamConfig, group_rates};
 pub use archive::{Archive, Array, Element, Exchange, Persist, StateError};
 pub use baseline::{Baseline, BaselineConfig, InputDims, LinearBaseline, MlpBaseline, MlpBaselineConfig};
-pub use gae::{AdvantageConfig, Advantages, advantages, normalize};
+pub use gae::{AdvantageConfig, Advantages, Foresight, advantages, normalize};
 pub use learner::{LearnError, Learner};
 pub use learner_kind::{LearnerKind, LearnerSetup, PpoKind, SettingFault, TrpoKind, own};
 pub use metrics::Metrics;

@@ -116,10 +116,19 @@ pub struct PpoSettings {
 }
 
 /// What an update of [`Ppo`] tells.
-const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epochs"];
+const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epochs", "value_loss", "explained_variance"];
 /// The same of a policy that draws a part of the design once an episode.
-const DRAW_METRICS: &[&str] =
-    &["kl", "entropy", "clip_fraction", "grad_norm", "epochs", "design_kl", "design_clip_fraction"];
+const DRAW_METRICS: &[&str] = &[
+    "kl",
+    "entropy",
+    "clip_fraction",
+    "grad_norm",
+    "epochs",
+    "value_loss",
+    "explained_variance",
+    "design_kl",
+    "design_clip_fraction",
+];
 
 /// What an update of this policy tells.
 fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
@@ -135,6 +144,8 @@ fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
 /// | `clip_fraction` | share of rows in the last epoch whose ratio was clipped |
 /// | `grad_norm` | mean norm of the policy gradient before clipping |
 /// | `epochs` | epochs done; fewer than asked for where the KL limit stopped them |
+/// | `value_loss` | mean square of the error of the values that the advantages come from, before they learn: reward², of the rewards that the learner sees |
+/// | `explained_variance` | the share of the variance of what they learn that these values account for: 1 at best, 0 for values that know the mean alone |
 /// | `design_kl`, `design_clip_fraction` | the first and the third for what is drawn once an episode, the mean over the episodes; only where something is |
 pub struct Ppo<P: Policy> {
     optimiser: Optimiser<P>,
@@ -176,7 +187,7 @@ impl<P: Policy> Learner for Ppo<P> {
                 .or_as_before(iteration, |baseline| epoch_by_epoch(executor, optimiser, baseline, batch, targets, when))
         } else {
             baseline.fit_beside(executor, (batch, &targets), when, || {
-                optimiser.update(batch, (&targets.advantage, &draws), progress, iteration)
+                optimiser.update(batch, (&targets, &draws), progress, iteration)
             })
         };
         if result.is_err() {
@@ -198,7 +209,7 @@ fn epoch_by_epoch<P: Policy>(
 ) -> Result<Metrics, LearnError> {
     let config = optimiser.config.advantages();
     let (own, epochs) = (baseline.epochs(), optimiser.config.epochs);
-    let mut update = optimiser.begin(batch.rows(), progress, iteration);
+    let mut update = optimiser.begin(batch.rows(), targets.foresight, progress, iteration);
     let mut fit = baseline.begin(batch, &targets, progress, iteration);
     for epoch in 0..epochs {
         let draws = Draws::new(&*optimiser.policy, batch, &targets, &config);

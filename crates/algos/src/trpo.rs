@@ -21,6 +21,7 @@ use self::passes::Passes;
 use crate::archive::{Exchange, Persist, StateError};
 use crate::baseline::{Baseline, InputDims};
 use crate::draws::Draws;
+use crate::gae::Foresight;
 use crate::learner::{LearnError, Learner};
 use crate::metrics::Metrics;
 use crate::minibatch::Minibatch;
@@ -29,10 +30,30 @@ use crate::minibatch::Minibatch;
 const LEAST_CURVATURE: f64 = 1e-8;
 
 /// What an update of [`Trpo`] tells.
-const METRICS: &[&str] = &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected"];
+const METRICS: &[&str] = &[
+    "kl",
+    "entropy",
+    "step_fraction",
+    "gain",
+    "cg_iterations",
+    "tried",
+    "rejected",
+    "value_loss",
+    "explained_variance",
+];
 /// The same of a policy that draws a part of the design once an episode.
-const DRAW_METRICS: &[&str] =
-    &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected", "design_kl"];
+const DRAW_METRICS: &[&str] = &[
+    "kl",
+    "entropy",
+    "step_fraction",
+    "gain",
+    "cg_iterations",
+    "tried",
+    "rejected",
+    "value_loss",
+    "explained_variance",
+    "design_kl",
+];
 
 /// What an update of this policy tells.
 fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
@@ -55,6 +76,8 @@ fn metric_names(policy: &impl Policy) -> &'static [&'static str] {
 /// | `cg_iterations` | iterations of conjugate gradients |
 /// | `tried` | steps that the line search tried |
 /// | `rejected` | updates so far that took no step |
+/// | `value_loss` | mean square of the error of the values that the advantages come from, before they learn: reward², of the rewards that the learner sees |
+/// | `explained_variance` | the share of the variance of what they learn that these values account for: 1 at best, 0 for values that know the mean alone |
 /// | `design_kl` | KL divergence of what is drawn once an episode, nats; only where something is |
 pub struct Trpo<P: Policy> {
     region: TrustRegion<P>,
@@ -123,7 +146,14 @@ impl<P: Policy> TrustRegion<P> {
     }
 
     /// One step from the gathered batch, left in `candidate`; where none is found that is the present parameters.
-    fn step(&mut self, executor: &dyn Executor, progress: f64, iteration: u64) -> Result<Metrics, LearnError> {
+    /// The values that the advantages came from have this foresight.
+    fn step(
+        &mut self,
+        executor: &dyn Executor,
+        foresight: Foresight,
+        progress: f64,
+        iteration: u64,
+    ) -> Result<Metrics, LearnError> {
         let not_finite = |what| LearnError::NotFinite { what, iteration };
         let rows = self.batch.count;
         let curvature = if self.config.fisher_rows.count(rows) < rows { &self.curvature } else { &self.batch };
@@ -178,6 +208,8 @@ impl<P: Policy> TrustRegion<P> {
             solution.iterations as f64,
             found.tried as f64,
             self.rejected as f64,
+            foresight.value_loss,
+            foresight.explained_variance,
             design_kl,
         ];
         Ok(Metrics::new(names, values[..names.len()].to_vec()))
@@ -205,7 +237,7 @@ impl<P: Policy> Learner for Trpo<P> {
         let draws = Draws::new(&*region.policy, batch, &targets, &region.config.advantages);
         let metrics = baseline.fit_beside(executor, (batch, &targets), (progress, iteration), || {
             region.gather(batch, (&targets.advantage, &draws), iteration);
-            region.step(executor, progress, iteration)
+            region.step(executor, targets.foresight, progress, iteration)
         })?;
         region.params.copy_from_slice(&region.candidate);
         Ok(metrics)

@@ -24,11 +24,21 @@ fn learners_tell_what_they_know_and_nothing_else() {
     let learners: [(Box<dyn Learner>, &[&str]); 2] = [
         (
             Box::new(Ppo::new(&case.settings, policy.clone(), params.clone(), 3)),
-            &["kl", "entropy", "clip_fraction", "grad_norm", "epochs"],
+            &["kl", "entropy", "clip_fraction", "grad_norm", "epochs", "value_loss", "explained_variance"],
         ),
         (
             Box::new(Trpo::new(&trust, policy.clone(), params.clone(), 3)),
-            &["kl", "entropy", "step_fraction", "gain", "cg_iterations", "tried", "rejected"],
+            &[
+                "kl",
+                "entropy",
+                "step_fraction",
+                "gain",
+                "cg_iterations",
+                "tried",
+                "rejected",
+                "value_loss",
+                "explained_variance",
+            ],
         ),
     ];
     for (mut learner, names) in learners {

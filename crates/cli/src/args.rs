@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use hwasp_experiment::Method;
-use hwasp_plot::XAxis;
+use hwasp_plot::{Theme, XAxis};
 use hwasp_report::play;
 
 use crate::caller::Caller;
@@ -384,6 +384,24 @@ impl AxisArg {
     }
 }
 
+/// What a picture is to be looked at on.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ThemeArg {
+    /// A screen: panels of one size side by side
+    Screen,
+    /// A page: 170 mm wide, with texts of 8 points and more, and dashes for printers without colour
+    Print,
+}
+
+impl ThemeArg {
+    pub(crate) fn theme(self) -> Theme {
+        match self {
+            Self::Screen => Theme::Screen,
+            Self::Print => Theme::Print,
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlotArgs {
     /// Run folders, as `hwasp train` writes them
@@ -395,6 +413,9 @@ pub(crate) struct PlotArgs {
     /// What the curves are drawn against
     #[arg(long, value_enum, default_value_t = AxisArg::Steps)]
     pub(crate) axis: AxisArg,
+    /// What it is to be looked at on; the colours of both are told apart by every common kind of colour vision
+    #[arg(long, value_enum, default_value_t = ThemeArg::Screen)]
+    pub(crate) theme: ThemeArg,
     /// A line above it [default: none]
     #[arg(long, default_value = "", hide_default_value = true)]
     pub(crate) title: String,

@@ -141,7 +141,7 @@ impl Watch for GridProgress {
                     (c.env_steps, c.wall_s) = (row.env_steps, row.wall_s);
                     if let Some(bar) = &c.bar {
                         bar.set_position(row.env_steps.min(c.budget));
-                        bar.set_message(format!("{}  return {:.1}", c.label, row.discounted_return));
+                        bar.set_message(format!("{}  discounted return {:.1}", c.label, row.discounted_return));
                     }
                 }
                 Event::Evaluated(evaluation) => {
@@ -150,8 +150,12 @@ impl Watch for GridProgress {
                     if let Some(bar) = c.bar.take() {
                         bar.finish_and_clear();
                     }
-                    let told =
-                        format!("{}: {:.1} in {}", c.label, evaluation.discounted_return.mean, duration(c.wall_s));
+                    let told = format!(
+                        "{}: discounted return {:.1} in {}",
+                        c.label,
+                        evaluation.discounted_return.mean,
+                        duration(c.wall_s)
+                    );
                     let (done, left) = state.outlook(self.threads);
                     let left = left.map_or(String::new(), |left| format!(", about {} left", duration(left)));
                     if !self.quiet && !self.terminal {

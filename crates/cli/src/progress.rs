@@ -64,12 +64,12 @@ impl Progress {
             design.push("…".to_owned());
         }
         // What matters most comes first: a narrow terminal shows no more than that.
-        let worth = match row.discounted_return {
+        let worth = match row.undiscounted_return {
             // Where steps are counted, an iteration may be over before any episode is.
             none if none.is_nan() => "no return".to_owned(),
-            mean => format!("return {mean:.1}"),
+            mean => format!("return {mean:.1} (discounted {:.1})", row.discounted_return),
         };
-        let message = format!("{worth}  {}  {:.0}k steps/s", design.join("  "), rate / 1e3);
+        let message = format!("{worth}  {}  {}", design.join("  "), per_second(rate));
         if self.terminal {
             let left = self.env_steps.saturating_sub(row.env_steps) as f64 / rate;
             self.bar.set_position(row.env_steps.min(self.env_steps));
@@ -83,6 +83,11 @@ impl Progress {
             tracing::info!(target: PROGRESS, "{steps}  {message}");
         }
     }
+}
+
+/// A rate such as `968k steps/s` or `412 steps/s`.
+fn per_second(rate: f64) -> String {
+    if rate >= 1e4 { format!("{:.0}k steps/s", rate / 1e3) } else { format!("{rate:.0} steps/s") }
 }
 
 /// Counts pieces of work: a bar on a terminal, a line for each elsewhere.
@@ -150,5 +155,19 @@ impl Observer for Progress {
             Event::Checkpoint(_) | Event::Failed(_) => {}
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A training of 412 steps a second was told as `0k steps/s`.
+    #[test]
+    fn slow_trainings_tell_their_rate() {
+        assert_eq!(
+            [412.4, 9_999.0, 10_400.0, 968_180.0].map(per_second),
+            ["412 steps/s", "9999 steps/s", "10k steps/s", "968k steps/s"]
+        );
     }
 }

@@ -36,8 +36,8 @@ pub use mesh::Mesh;
 pub use moments::Moments;
 pub use placement::{ActionDecoder, Placement, PlacementError};
 pub use policy::{
-    Actor, Anneal, HardwarePolicy, Noise, Normalizer, ParamGroup, ParamKind, Policy, PolicySpec, PolicyTape,
-    Reparameterised, Rows, Spread,
+    Actor, Anneal, HardwarePolicy, Noise, NoiseSizes, Normalizer, ParamGroup, ParamKind, Policy, PolicySpec,
+    PolicyTape, Reparameterised, Rows, Spread,
 };
 pub use rollout::{Batch, Episode, EpisodeKind, EpisodeResult, Episodes, LaneSteps, RolloutError, Sampler, all_failed};
 pub use schedule::{share_done, share_left};

@@ -6,7 +6,9 @@ mod common;
 
 use std::sync::Arc;
 
-use hwasp_core::{EpisodeKind, Episodes, HardwarePolicy, Placement, Policy, Rows, Sampler, Serial, gaussian};
+use hwasp_core::{
+    EpisodeKind, Episodes, HardwarePolicy, Placement, Policy, PolicySpec, Rows, Sampler, Serial, gaussian,
+};
 
 fn episodes(indices: std::ops::Range<u64>, progress: f64, kind: EpisodeKind) -> Episodes {
     Episodes { seed: 11, iteration: 2, indices, progress, kind }
@@ -111,12 +113,30 @@ fn noise_follows_its_schedule() {
             [(0.0, 1.0, 1.0), (0.125, 0.1_f64.powf(0.25), 1.0), (0.5, 0.1, 0.1), (0.75, 0.1, 0.01), (1.0, 0.1, 0.01)]
         {
             let factor = [design, design, 1.0, 1.0, command, command];
+            let sizes = policy.noise_sizes(&params, progress);
+            let wanted = [0.4 * design, 2.0, 0.25 * command];
+            for (size, wanted) in [sizes.design, sizes.effort, sizes.command].into_iter().zip(wanted) {
+                assert!((size - wanted).abs() < 1e-6 * wanted, "{progress}: {sizes:?}");
+            }
             for (j, log_std) in log_std(&policy, &params, progress).into_iter().enumerate() {
                 let wanted = (start[j] * factor[j]).ln();
                 assert!((f64::from(log_std) - wanted).abs() < 1e-6, "{progress} {j}: {log_std} against {wanted}");
             }
         }
     }
+}
+
+/// An action of commands alone has no noise of another kind, and commands whose spread the controller tells have no one size.
+#[test]
+fn what_the_action_has_not_has_no_noise() {
+    let sizes = |state_dependent_std| {
+        let spec = PolicySpec { state_dependent_std, ..common::policy_spec(vec![Placement::Fixed(1.0); 4]) };
+        let policy = HardwarePolicy::new(spec, &common::env_spec()).unwrap();
+        policy.noise_sizes(&policy.init(0, 1.0), 0.0)
+    };
+    let plain = sizes(false);
+    assert!((plain.command - 0.25).abs() < 1e-6 && plain.effort.is_nan() && plain.design.is_nan(), "{plain:?}");
+    assert!(sizes(true).command.is_nan());
 }
 
 /// What was learned is added to the schedule.

@@ -10,8 +10,18 @@ pub const MOST_STEPS: usize = 100_000;
 /// Keys of `[task]` that every problem has.
 pub(crate) const COMMON_KEYS: [&str; 2] = ["problem", "horizon"];
 /// Columns of a learning curve that are not a design group's, the last three in those of earlier versions.
-const COLUMNS: [&str; 8] =
-    ["iteration", "env_steps", "wall_s", "discounted_return", "return", "kl", "entropy", "step_fraction"];
+const COLUMNS: [&str; 10] = [
+    "iteration",
+    "env_steps",
+    "wall_s",
+    "discounted_return",
+    "return",
+    "episodes",
+    "episode_steps",
+    "kl",
+    "entropy",
+    "step_fraction",
+];
 /// The most groups of a design: each has a column in learning curves.
 pub const MOST_GROUPS: usize = 64;
 

@@ -3,7 +3,7 @@
 use hwasp_tasks::hand::{ClosingPoint, FreeClosing};
 
 use crate::draw::{Entry, Page, one_by_one, picture};
-use crate::options::PanelText;
+use crate::options::{PanelText, Theme};
 use crate::panel::{Panel, SECOND_ROUND};
 use crate::picture::{PanelPlots, Plot};
 use crate::series::{Line, Shape};
@@ -15,8 +15,7 @@ const ALL: usize = 6;
 
 /// What the dashes are.
 const LIMIT: &str = "the motor's limit";
-const EXPLANATION: &str = "without gravity and object; angles: full lines are proximal joints, broken ones distal joints; \
-                           0 is open";
+const EXPLANATION: &str = "without gravity and object; 0 is open";
 
 /// Draws free closing up to the last of the `points`, with the most that the tendons pull together, N.
 pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) -> Plot {
@@ -27,19 +26,36 @@ pub fn closing_plot(points: &[ClosingPoint], tension_limit: f64, title: &str) ->
         explanation: EXPLANATION.to_owned(),
         ..Page::default()
     };
-    Plot { svg: picture(&panels(points, tension_limit), &entries(), &page), notes: Vec::new() }
+    Plot { svg: picture(&panels(points, tension_limit), &BOTH, &page), theme: Theme::Screen, notes: Vec::new() }
 }
 
 /// The same as two small pictures, and what their lines mean.
 pub fn closing_panels(points: &[ClosingPoint], tension_limit: f64) -> PanelPlots {
-    let panels = one_by_one(panels(points, tension_limit).into(), &entries(), LIMIT);
+    let legend = |panel: usize| if panel == 0 { &ANGLES[..] } else { &TENSIONS[..] };
+    let panels = one_by_one(panels(points, tension_limit).into(), legend, LIMIT);
     PanelPlots { panels, explanation: EXPLANATION.to_owned(), notes: Vec::new() }
 }
 
-fn entries() -> [Entry<'static>; 3] {
-    let entry = |place, label| Entry { place, label, runs: 1, asked: 1 };
-    [entry(THUMB, "thumb"), entry(FINGER, "each finger"), entry(ALL, "the three tendons together")]
+const fn entry(place: usize, label: &str) -> Entry<'_> {
+    Entry { place, label, runs: 1, asked: 1 }
 }
+
+/// The legends of both pictures in one, of the angles, and of the tensions.
+const BOTH: [Entry<'_>; 5] = [
+    entry(THUMB, "thumb: angle of the proximal joint, tension"),
+    entry(SECOND_ROUND + THUMB, "thumb: angle of the distal joint"),
+    entry(FINGER, "each finger: angle of the proximal joint, tension"),
+    entry(SECOND_ROUND + FINGER, "each finger: angle of the distal joint"),
+    entry(ALL, "the three tendons together"),
+];
+const ANGLES: [Entry<'_>; 4] = [
+    entry(THUMB, "thumb, proximal"),
+    entry(SECOND_ROUND + THUMB, "thumb, distal"),
+    entry(FINGER, "finger, proximal"),
+    entry(SECOND_ROUND + FINGER, "finger, distal"),
+];
+const TENSIONS: [Entry<'_>; 3] =
+    [entry(THUMB, "thumb"), entry(FINGER, "each finger"), entry(ALL, "the three tendons together")];
 
 fn panels(points: &[ClosingPoint], tension_limit: f64) -> [Panel; 2] {
     let line = |value: &dyn Fn(&ClosingPoint) -> f64| {

@@ -4,7 +4,9 @@ use hwasp_runs::metrics::{MetricsTable, TERM};
 use hwasp_training::MetricsRow;
 
 /// The column of the return, whose panel comes first.
-pub const RETURN: &str = "discounted_return";
+pub const RETURN: &str = "return";
+/// The column of the discounted return, whose panel is the next.
+pub const DISCOUNTED: &str = "discounted_return";
 
 /// One run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +15,8 @@ pub struct Curve {
     pub label: String,
     /// Where each row lies on the horizontal axis; never falling.
     pub x: Vec<f64>,
+    /// Mean return of the training episodes, not discounted, one per row; where it is empty there is no panel of it.
+    pub undiscounted_return: Vec<f64>,
     /// Mean discounted return of the training episodes, one per row.
     pub discounted_return: Vec<f64>,
     /// What each named term of the reward came to in these episodes, with its column name.
@@ -38,20 +42,29 @@ impl Curve {
         Self {
             label: label.into(),
             x: table.rows.iter().map(x).collect(),
+            undiscounted_return: table.rows.iter().map(|row| row.undiscounted_return).collect(),
             discounted_return: table.rows.iter().map(|row| row.discounted_return).collect(),
             terms: table.terms.iter().enumerate().map(term).collect(),
             totals: table.design_totals.iter().enumerate().map(total).collect(),
         }
     }
 
+    /// Without the return that is not discounted: where runs are compared by the discounted one, that is what is drawn.
+    #[must_use]
+    pub fn judged(self) -> Self {
+        Self { undiscounted_return: Vec::new(), ..self }
+    }
+
     pub(crate) fn column(&self, name: &str) -> Option<&[f64]> {
-        if name == RETURN {
-            return Some(&self.discounted_return);
+        match name {
+            RETURN => return (!self.undiscounted_return.is_empty()).then_some(&self.undiscounted_return),
+            DISCOUNTED => return Some(&self.discounted_return),
+            _ => {}
         }
         self.columns().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
 
-    /// All but the return.
+    /// All but the returns.
     pub(crate) fn columns(&self) -> impl Iterator<Item = &(String, Vec<f64>)> {
         self.totals.iter().chain(&self.terms)
     }

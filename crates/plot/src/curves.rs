@@ -1,20 +1,26 @@
-//! Pictures of runs: a panel for the return and one for each design total and each term of the reward.
+//! Pictures of runs: a panel for each of the returns and one for each design total and each term of the reward.
 
 use hwasp_runs::metrics::TERM;
 
-use crate::curve::{Curve, RETURN};
+use crate::curve::{Curve, DISCOUNTED, RETURN};
 use crate::error::{LONGEST_WINDOW, MOST_PANELS, MOST_RUNS, PlotError};
 use crate::options::{PanelText, PlotOptions};
 use crate::picture::{PanelPlots, Plot};
 use crate::series::{self, Note};
 use crate::{draw, panel};
 
-/// Draws the runs: one panel for the discounted return and one for each design total and each term of the
+/// Draws the runs: panels for return and discounted return, and one for each design total and each term of the
 /// reward, one colour per label.
 pub fn curves(runs: &[Curve], options: &PlotOptions) -> Result<Plot, PlotError> {
     let Drawn { panels, entries, explanation, notes } = Drawn::new(runs, options)?;
-    let page = draw::Page { title: &options.title, untitled: "learning curves", explanation, ..draw::Page::default() };
-    Ok(Plot { svg: draw::picture(&panels, &entries, &page), notes })
+    let page = draw::Page {
+        title: &options.title,
+        untitled: "learning curves",
+        explanation,
+        theme: options.theme,
+        ..draw::Page::default()
+    };
+    Ok(Plot { theme: options.theme, svg: draw::picture(&panels, &entries, &page), notes })
 }
 
 /// Draws the same panels, each as a small picture of its own without a title; with a legend where there are several labels.
@@ -23,7 +29,11 @@ pub fn curve_panels(runs: &[Curve], options: &PlotOptions) -> Result<PanelPlots,
     if entries.len() == 1 {
         entries.clear();
     }
-    Ok(PanelPlots { panels: draw::one_by_one(panels, &entries, draw::Page::default().reference), explanation, notes })
+    Ok(PanelPlots {
+        panels: draw::one_by_one(panels, |_| &entries[..], draw::Page::default().reference),
+        explanation,
+        notes,
+    })
 }
 
 /// What is to be drawn.
@@ -47,7 +57,8 @@ impl<'r> Drawn<'r> {
         }
         // Labels and columns in the order in which they are first seen.
         let mut groups: Vec<Vec<&Curve>> = Vec::new();
-        let mut columns = vec![RETURN];
+        let told = runs.iter().any(|run| run.column(RETURN).is_some());
+        let mut columns = if told { vec![RETURN, DISCOUNTED] } else { vec![DISCOUNTED] };
         for run in runs {
             match groups.iter_mut().find(|group| group[0].label == run.label) {
                 Some(group) => group.push(run),

@@ -26,6 +26,18 @@ pub enum Band {
     Bootstrap,
 }
 
+/// What a picture is to be looked at on. The colours of both are those of Okabe and Ito (*Color Universal Design*, 2008;
+/// <https://jfly.uni-koeln.de/color/>) without the yellow, which every common kind of colour vision tells apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Theme {
+    /// Panels of one size, as many side by side as a wide screen holds.
+    #[default]
+    Screen,
+    /// As wide as the text of a page (170 mm), whatever is on it: texts have 8 points and more, lines one, and each colour has
+    /// dashes of its own for printers without colour.
+    Print,
+}
+
 /// How a picture is drawn.
 ///
 /// | option | default | what it does | range |
@@ -34,6 +46,7 @@ pub enum Band {
 /// | `x_axis` | `EnvSteps` | what the curves are drawn against; their `x` has to be that | - |
 /// | `window` | 11 | rows in the trailing mean of the return | 1 to 1001 |
 /// | `band` | `MinMax` | the band around several runs | - |
+/// | `theme` | `Screen` | what it is to be looked at on | - |
 /// | `panels` | none | axis texts and optima by column; a column without gets its own name | - |
 /// | `asked` | none | labels with the runs that there should be, where some did not finish | - |
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +59,8 @@ pub struct PlotOptions {
     pub window: usize,
     /// The band around several runs.
     pub band: Band,
+    /// What it is to be looked at on.
+    pub theme: Theme,
     /// Axis texts and optima by column.
     pub panels: Vec<PanelText>,
     /// Labels with the runs that there should be. The legend says `1 of 5 runs` where there are fewer.
@@ -59,6 +74,7 @@ impl Default for PlotOptions {
             x_axis: XAxis::EnvSteps,
             window: 11,
             band: Band::MinMax,
+            theme: Theme::Screen,
             panels: Vec::new(),
             asked: Vec::new(),
         }

@@ -6,12 +6,15 @@ use std::sync::Arc;
 use resvg::{tiny_skia, usvg};
 
 use crate::error::PlotError;
+use crate::options::Theme;
 use crate::picture::Plot;
 
 /// The font of every PNG, whatever the machine has installed; see `assets/README.md`.
 const FONT: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 /// Pixels of a PNG for each of the SVG's, so that it is sharp in print and on fine screens.
 const SCALE: f32 = 2.0;
+/// The same for print: 300 dots per inch.
+const PRINT_SCALE: f32 = 300.0 / 96.0;
 /// The most pixels of a PNG on either side.
 const MOST_PIXELS: f32 = 20_000.0;
 
@@ -20,7 +23,7 @@ pub fn write_plot(path: &Path, plot: &Plot) -> Result<(), PlotError> {
     let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     let bytes = match extension.as_deref() {
         Some("svg") => plot.svg.clone().into_bytes(),
-        Some("png") => render_png(plot, SCALE)?,
+        Some("png") => render_png(plot, if plot.theme == Theme::Print { PRINT_SCALE } else { SCALE })?,
         _ => return Err(PlotError::Extension { path: path.to_owned() }),
     };
     std::fs::write(path, bytes).map_err(|source| PlotError::Write { path: path.to_owned(), source })

@@ -3,7 +3,7 @@
 use hwasp_core::unit;
 
 use crate::axis::{Axis, value_label};
-use crate::options::PanelText;
+use crate::options::{PanelText, Theme};
 use crate::series::{Point, Shape, thin};
 use crate::svg::{Anchor, Svg, text_width};
 
@@ -11,6 +11,8 @@ use crate::svg::{Anchor, Svg, text_width};
 pub(super) const AREA: (f64, f64) = (360.0, 236.0);
 /// Room above, right of and below it.
 pub(super) const MARGINS: (f64, f64, f64) = (8.0, 50.0, 46.0);
+/// Room right of it in print, with the figure of an optimum and without one.
+const PRINT_RIGHT: (f64, f64) = (32.0, 12.0);
 /// From the axis to its text, if the labels of the ticks leave room for it.
 const LABEL_AT: f64 = 56.0;
 /// The size of the ticks' labels, how far they are from the axis, and the least between them and its text.
@@ -27,18 +29,28 @@ pub(super) struct Site {
     pub(super) area: (f64, f64),
     /// How far the text of the vertical axis is from it.
     pub(super) label_at: f64,
+    pub(super) theme: Theme,
 }
 
 /// How far the text of the vertical axis is from it, for the widest label of a tick among the panels, and the room that
 /// both take; without a text only the ticks'.
-pub(super) fn left_margin(panels: &[Panel]) -> (f64, f64) {
+pub(super) fn left_margin(panels: &[Panel], theme: Theme) -> (f64, f64) {
     let widest = panels.iter().map(Panel::widest_label).fold(0.0, f64::max);
     let ticks = TICK.1 + widest + TICK.2;
     if panels.iter().all(|panel| panel.text.label.is_empty()) {
         return (ticks, ticks);
     }
-    let label_at = LABEL_AT.max(ticks);
+    let label_at = if theme == Theme::Print { ticks } else { LABEL_AT.max(ticks) };
     (label_at, label_at + LABEL_ROOM)
+}
+
+/// Room right of the plotting areas.
+pub(super) fn right_margin(panels: &[Panel], theme: Theme) -> f64 {
+    match theme {
+        Theme::Screen => MARGINS.1,
+        Theme::Print if panels.iter().any(|panel| panel.text.optimum.is_some()) => PRINT_RIGHT.0,
+        Theme::Print => PRINT_RIGHT.1,
+    }
 }
 
 pub(super) const INK: &str = "#262626";
@@ -50,8 +62,15 @@ pub(super) const FRAME: &str = "stroke=\"#262626\" stroke-width=\"0.9\"";
 
 /// Okabe and Ito's palette without its yellow, told apart by every common kind of colour vision.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
-/// A second and third round of colours is dashed.
+/// A second and third round of colours is dashed; in print each colour is.
 const DASHES: [&str; 3] = ["", " stroke-dasharray=\"7 2.5\"", " stroke-dasharray=\"2 2\""];
+const PRINT_DASHES: [&str; 5] = [
+    "",
+    " stroke-dasharray=\"7 2.5\"",
+    " stroke-dasharray=\"2 2\"",
+    " stroke-dasharray=\"9 2.5 2 2.5\"",
+    " stroke-dasharray=\"14 3\"",
+];
 
 /// The first place whose lines are dashed; their colours are those from the beginning.
 pub(super) const SECOND_ROUND: usize = COLOURS.len();
@@ -62,8 +81,11 @@ pub(super) fn colour(place: usize) -> &'static str {
 }
 
 /// The stroke of the label at this place in the legend.
-pub(super) fn stroke(place: usize) -> String {
-    let dash = DASHES[place / COLOURS.len() % DASHES.len()];
+pub(super) fn stroke(place: usize, theme: Theme) -> String {
+    let dash = match theme {
+        Theme::Screen => DASHES[place / COLOURS.len() % DASHES.len()],
+        Theme::Print => PRINT_DASHES[place % PRINT_DASHES.len()],
+    };
     format!("stroke=\"{}\" stroke-width=\"1.8\"{dash}", colour(place))
 }
 
@@ -113,6 +135,11 @@ impl Panel {
     /// Whether several runs of a label are drawn one by one.
     pub(super) fn has_separate(&self) -> bool {
         self.shapes.iter().flatten().any(|shape| matches!(shape, Shape::Separate(_)))
+    }
+
+    /// Whether it shows anything of the label at this place.
+    pub(super) fn shows(&self, place: usize) -> bool {
+        matches!(self.shapes.get(place), Some(Some(_)))
     }
 
     /// Whether the label at this place has a band.
@@ -175,13 +202,19 @@ impl Frame<'_> {
     }
 
     fn draw_axes(&self, svg: &mut Svg, text: &PanelText, x_label: &str) {
-        let Site { corner: (left, top), area, label_at } = self.site;
+        let Site { corner: (left, top), area, label_at, .. } = self.site;
         let (right, bottom) = (left + area.0, top + area.1);
-        for (tick, label) in self.x.ticks().into_iter().zip(self.x.engineering_labels()) {
+        let (ticks, labels) = (self.x.ticks(), self.x.engineering_labels());
+        // A narrow panel has no room for all.
+        let widest = labels.iter().map(|label| text_width(label, TICK.0)).fold(0.0, f64::max) + TICK.2;
+        let every = (widest * ticks.len() as f64 / area.0).ceil().max(1.0) as usize;
+        for (i, (tick, label)) in ticks.into_iter().zip(labels).enumerate() {
             let x = self.at((tick, 0.0)).0;
             svg.line((x, top), (x, bottom), GRID_LINE);
             svg.line((x, bottom), (x, bottom + 4.0), FRAME);
-            svg.text((x, bottom + 16.0), TICK.0, Anchor::Middle, INK, &label);
+            if i % every == 0 {
+                svg.text((x, bottom + 16.0), TICK.0, Anchor::Middle, INK, &label);
+            }
         }
         for (tick, label) in self.values.ticks().into_iter().zip(self.values.labels()) {
             let y = self.at((0.0, tick)).1;
@@ -219,7 +252,7 @@ impl Frame<'_> {
     }
 
     fn draw_lines(&self, svg: &mut Svg, place: usize, shape: &Shape) {
-        let style = stroke(place);
+        let style = stroke(place, self.site.theme);
         match shape {
             Shape::Nothing => {}
             Shape::Single(line) => self.draw_line(svg, &line.smooth, &style, place),

@@ -1,5 +1,6 @@
 //! Finished pictures.
 
+use crate::options::Theme;
 use crate::series::Note;
 
 /// A finished picture.
@@ -7,6 +8,8 @@ use crate::series::Note;
 pub struct Plot {
     /// The SVG document.
     pub svg: String,
+    /// What it is to be looked at on: its pixels are finer for print.
+    pub theme: Theme,
     /// What the picture does not show, for the user to be told.
     pub notes: Vec<Note>,
 }

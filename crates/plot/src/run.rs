@@ -4,7 +4,7 @@ use hwasp_core::unit;
 use hwasp_runs::{DesignGroupSummary, ExtraFiles, RunError, SavedRun};
 use hwasp_training::{Assembly, total_name};
 
-use crate::curve::{Curve, RETURN, XAxis};
+use crate::curve::{Curve, DISCOUNTED, RETURN, XAxis};
 use crate::curves::curves;
 use crate::options::{PanelText, PlotOptions};
 
@@ -31,7 +31,7 @@ pub fn saved_curve(saved: &SavedRun, axis: XAxis) -> Result<Curve, RunError> {
 
 /// Axis texts, units and known optima for pictures of such runs.
 pub fn plot_options(assembly: &Assembly, title: String) -> PlotOptions {
-    let mut panels = vec![return_text()];
+    let mut panels = return_texts().to_vec();
     for (group, optimum) in assembly.policy.space().groups().iter().zip(&assembly.worlds.optimum) {
         // The curve shows the design as trained; the optimum is of the design as built.
         let optimum = optimum.filter(|_| trains_what_is_built(assembly));
@@ -47,9 +47,13 @@ fn trains_what_is_built(assembly: &Assembly) -> bool {
     assembly.worlds.training.law.as_built(&middle) == middle
 }
 
-/// The axis text of the return.
-fn return_text() -> PanelText {
-    PanelText { column: RETURN.into(), label: "discounted return".into(), ..PanelText::default() }
+/// The axis texts of the returns.
+fn return_texts() -> [PanelText; 2] {
+    [(RETURN, "return"), (DISCOUNTED, "discounted return")].map(|(column, label)| PanelText {
+        column: column.into(),
+        label: label.into(),
+        ..PanelText::default()
+    })
 }
 
 /// The axis text of the total of a group of parameters, each of which has the SI `unit` and is at most `hi`.
@@ -66,6 +70,6 @@ pub fn saved_plot_options<'g>(groups: impl IntoIterator<Item = (&'g str, &'g Des
         let optimum = group.optimum.filter(|_| group.as_built == group.values);
         total_text((name, group.values.len()), (&group.unit, group.limits[1]), optimum)
     };
-    let panels = std::iter::once(return_text()).chain(groups.into_iter().map(total)).collect();
+    let panels = return_texts().into_iter().chain(groups.into_iter().map(total)).collect();
     PlotOptions { panels, ..PlotOptions::default() }
 }

@@ -5,7 +5,7 @@ use hwasp_runs::metrics::TERM;
 use hwasp_training::stats::{Bootstrap, Interval, LEAST_VALUES, Sample, StatsError};
 use rand::SeedableRng;
 
-use crate::curve::{Curve, RETURN};
+use crate::curve::{Curve, DISCOUNTED, RETURN};
 use crate::error::{MOST_PANELS, PlotError};
 use crate::options::{Band, PlotOptions};
 
@@ -169,7 +169,7 @@ pub(super) fn shape(
             notes.push(Note::Skipped { label, series, rows });
         }
         // A design moves without noise: a trailing mean would only make it late.
-        let noisy = (column == RETURN || column.starts_with(TERM)) && options.window > 1;
+        let noisy = (column == RETURN || column == DISCOUNTED || column.starts_with(TERM)) && options.window > 1;
         lines.push(if noisy {
             Line { smooth: trailing_mean(&raw, options.window), raw }
         } else {

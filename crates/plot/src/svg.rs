@@ -25,25 +25,38 @@ pub struct Svg {
 impl Svg {
     /// A white page with a title for readers of screens.
     pub fn new(width: f64, height: f64, title: &str) -> Self {
-        let mut page = Self::transparent(width, height, title);
-        let (w, h) = (px(width), px(height));
-        page.push(format_args!("<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n"));
-        page
+        Self::transparent(width, height, title).on_white(width, height)
+    }
+
+    /// The same for print: as wide as this in millimetres, whatever its pixels.
+    pub fn printed((width, height): (f64, f64), millimetres: f64, title: &str) -> Self {
+        let mm = |length: f64| format!("{}mm", px(length * millimetres / width));
+        Self::begin((width, height), (&mm(width), &mm(height)), title).on_white(width, height)
     }
 
     /// A page to lay over another picture.
     pub fn transparent(width: f64, height: f64, title: &str) -> Self {
+        Self::begin((width, height), (&px(width).to_string(), &px(height).to_string()), title)
+    }
+
+    fn begin((width, height): (f64, f64), (shown_width, shown_height): (&str, &str), title: &str) -> Self {
         let (w, h) = (px(width), px(height));
         let mut text = String::new();
         push(
             &mut text,
             format_args!(
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{shown_width}\" height=\"{shown_height}\" viewBox=\"0 0 {w} {h}\" \
                  role=\"img\" font-family=\"{FONTS}\">\n<title>{}</title>\n",
                 escape(title)
             ),
         );
         Self { text }
+    }
+
+    fn on_white(mut self, width: f64, height: f64) -> Self {
+        let (w, h) = (px(width), px(height));
+        self.push(format_args!("<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n"));
+        self
     }
 
     /// A rectangle from its upper left corner.

@@ -4,6 +4,7 @@ use hwasp_training::stats::Interval;
 use hwasp_training::{Change, MeanInterval};
 
 use crate::axis::Axis;
+use crate::options::Theme;
 use crate::panel::{FRAME, GREY, GRID_LINE, INK, TICK, colour};
 use crate::picture::Plot;
 use crate::svg::{Anchor, Svg, text_width};
@@ -65,7 +66,7 @@ pub fn tornado_plot(title: &str, all: &[TornadoRow<'_>], episodes: u64) -> Plot 
         column.draw(&mut svg, rows, x, bottom);
     }
     svg.text((MARGIN, bottom + 60.0), 10.0, Anchor::Start, GREY, &explanation(all.len(), episodes));
-    Plot { svg: svg.finish(), notes: Vec::new() }
+    Plot { svg: svg.finish(), theme: Theme::Screen, notes: Vec::new() }
 }
 
 fn legend(svg: &mut Svg, (mut x, y): (f64, f64)) {

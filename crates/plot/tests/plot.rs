@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use hwasp_plot::{Band, Curve, Note, PanelText, PlotError, PlotOptions, RETURN, XAxis, curves, render_png, write_plot};
+use hwasp_plot::{
+    Band, Curve, DISCOUNTED, Note, PanelText, PlotError, PlotOptions, Theme, XAxis, curves, render_png, write_plot,
+};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_training::MetricsRow;
 use resvg::{tiny_skia::Pixmap, usvg::roxmltree};
@@ -14,6 +16,7 @@ fn run(label: &str, rows: u32, shift: f64) -> Curve {
         terms: vec![],
         label: label.to_owned(),
         x: (1..=rows).map(|i| f64::from(i) * 40_000.0).collect(),
+        undiscounted_return: vec![],
         discounted_return: (0..rows).map(|i| -1100.0 + f64::from(i) * 6.0 + wave(i) + shift).collect(),
         totals: vec![("stiffness_total".to_owned(), (0..rows).map(|i| 60.0 - 0.4 * f64::from(i) + shift).collect())],
     }
@@ -146,7 +149,7 @@ fn a_bootstrap_band_is_narrower_than_the_extremes_and_always_the_same() {
 #[test]
 fn only_steps_that_all_runs_reached_are_summarised() {
     let plot = curves(&[run("HWasP", 100, 0.0), run("HWasP", 50, 1.0)], &options()).unwrap();
-    let series = RETURN.to_owned();
+    let series = DISCOUNTED.to_owned();
     let note = Note::Shortened { label: "HWasP".to_owned(), series, shown: 2e6, longest: 4e6 };
     assert!(plot.notes.contains(&note), "{:?}", plot.notes);
     assert!(has_text(&plot.svg, "2.0M") && !has_text(&plot.svg, "4M"), "{:?}", texts(&plot.svg));
@@ -163,7 +166,7 @@ fn rows_that_are_no_numbers_are_skipped_and_reported() {
     odd.x[20] = 0.0;
     let plot = curves(&[odd], &options()).unwrap();
     let note = |series: &str, rows| Note::Skipped { label: "HWasP".to_owned(), series: series.to_owned(), rows };
-    assert_eq!(plot.notes, [note(RETURN, 4), note("stiffness_total", 1)]);
+    assert_eq!(plot.notes, [note(DISCOUNTED, 4), note("stiffness_total", 1)]);
     assert_eq!(polylines(&plot.svg).iter().map(Vec::len).collect::<Vec<_>>(), [96, 96, 99]);
     assert!(!plot.svg.contains("NaN") && !plot.svg.contains("inf"));
     assert!(plot.notes[0].to_string().contains("without 4 of its rows"), "{}", plot.notes[0]);
@@ -294,10 +297,9 @@ fn a_table_becomes_a_curve() {
         env_steps: 100 * i,
         wall_s: 0.5 * i as f64,
         discounted_return: -(i as f64),
-        undiscounted_return: 0.0,
-        learner: vec![],
-        terms: vec![],
+        undiscounted_return: -2.0 * i as f64,
         design_totals: vec![5.0, i as f64],
+        ..MetricsRow::default()
     };
     let design_totals = vec!["a_total".to_owned(), "b_total".to_owned()];
     let table = MetricsTable { design_totals, rows: (0..3).map(row).collect(), ..MetricsTable::default() };
@@ -305,6 +307,51 @@ fn a_table_becomes_a_curve() {
     assert_eq!(x(XAxis::WallClock), [0.0, 0.5, 1.0]);
     assert_eq!(x(XAxis::Nominal), [50.0, 100.0, 150.0]);
     let curve = Curve::from_table("HWasP", &table, XAxis::EnvSteps, 50);
-    assert_eq!((curve.x, curve.discounted_return), (vec![0.0, 100.0, 200.0], vec![-0.0, -1.0, -2.0]));
+    assert_eq!((&*curve.x, &*curve.discounted_return), (&[0.0, 100.0, 200.0][..], &[-0.0, -1.0, -2.0][..]));
+    assert_eq!(curve.undiscounted_return, [-0.0, -2.0, -4.0]);
+    // Both have panels of their names, unless the discounted one is what is judged.
+    let named = |curve: Curve| texts(&curves(&[curve], &PlotOptions::default()).unwrap().svg);
+    let both = named(curve.clone());
+    assert!(["return", "discounted return"].iter().all(|name| both.iter().any(|text| text == name)), "{both:?}");
+    assert!(named(curve.clone().judged()).iter().all(|text| text != "return"));
     assert_eq!(curve.totals, [("a_total".to_owned(), vec![5.0; 3]), ("b_total".to_owned(), vec![0.0, 1.0, 2.0])]);
+}
+
+/// A picture of three panels was 1,410 pixels wide: on a page of 170 mm its texts had less than 4 points.
+#[test]
+fn pictures_for_print_are_as_wide_as_a_page_and_legible_on_it() {
+    let runs = ["a", "b", "c"].map(|label| run(label, 60, 10.0));
+    let of = |panels: u32, theme| {
+        let total = |i: u32| (format!("total_{i}"), vec![f64::from(i); 60]);
+        let runs = runs.clone().map(|run| Curve { totals: (1..panels).map(total).collect(), ..run });
+        curves(&runs, &PlotOptions { theme, ..options() }).unwrap()
+    };
+    for panels in [1, 2, 3, 5, 14] {
+        let plot = of(panels, Theme::Print);
+        let document = roxmltree::Document::parse(&plot.svg).unwrap();
+        let root = document.root_element();
+        assert_eq!(root.attribute("width"), Some("170mm"), "{panels}");
+        let width: f64 = root.attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
+        let points = |pixels: &str| pixels.parse::<f64>().unwrap() * 170.0 / 25.4 * 72.0 / width;
+        let numbers =
+            |name: &str| document.descendants().filter_map(|n| n.attribute(name)).map(points).collect::<Vec<_>>();
+        assert!(numbers("font-size").iter().all(|&size| size > 7.4), "{panels}: {:?}", numbers("font-size"));
+        assert!(numbers("stroke-width").iter().all(|&line| line > 0.5), "{panels}");
+        let high: f64 = root.attribute("height").unwrap().strip_suffix("mm").unwrap().parse().unwrap();
+        assert!(high < 240.0, "{panels} panels are {high} mm high");
+        // Three colours, three kinds of dashes.
+        let dashes: std::collections::BTreeSet<_> = document
+            .descendants()
+            .filter(|n| {
+                n.has_tag_name(("http://www.w3.org/2000/svg", "polyline")) && n.attribute("stroke-width") == Some("1.8")
+            })
+            .map(|n| n.attribute("stroke-dasharray"))
+            .collect();
+        assert_eq!(dashes.len(), 3, "{panels}: {dashes:?}");
+        if panels == 2 {
+            let size = &render_png(&plot, 300.0 / 96.0).unwrap()[16..20];
+            assert_eq!(u32::from_be_bytes(size.try_into().unwrap()), 2008);
+        }
+    }
+    assert!(!of(3, Theme::Screen).svg.contains("mm"));
 }

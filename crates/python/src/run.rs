@@ -95,17 +95,12 @@ impl Run {
         let rows = &table.rows;
         columns.set_item(FIXED_COLUMNS[0], PyArray1::from_iter(py, rows.iter().map(|row| row.iteration)))?;
         columns.set_item(FIXED_COLUMNS[1], PyArray1::from_iter(py, rows.iter().map(|row| row.env_steps)))?;
-        columns.set_item(FIXED_COLUMNS[2], PyArray1::from_iter(py, rows.iter().map(|row| row.wall_s)))?;
-        columns.set_item(FIXED_COLUMNS[3], PyArray1::from_iter(py, rows.iter().map(|row| row.discounted_return)))?;
-        columns.set_item(FIXED_COLUMNS[4], PyArray1::from_iter(py, rows.iter().map(|row| row.undiscounted_return)))?;
-        for (i, name) in table.learner.iter().enumerate() {
-            columns.set_item(format!("{LEARNER}{name}"), PyArray1::from_iter(py, rows.iter().map(|r| r.learner[i])))?;
-        }
-        for (i, name) in table.terms.iter().enumerate() {
-            columns.set_item(format!("{TERM}{name}"), PyArray1::from_iter(py, rows.iter().map(|r| r.terms[i])))?;
-        }
-        for (i, name) in table.design_totals.iter().enumerate() {
-            columns.set_item(name, PyArray1::from_iter(py, rows.iter().map(|r| r.design_totals[i])))?;
+        let fixed = FIXED_COLUMNS[2..].iter().map(|&name| name.to_owned());
+        let learner = table.learner.iter().map(|name| format!("{LEARNER}{name}"));
+        let terms = table.terms.iter().map(|name| format!("{TERM}{name}"));
+        for (i, name) in fixed.chain(learner).chain(terms).chain(table.design_totals.iter().cloned()).enumerate() {
+            let values = rows.iter().map(|row| values(row).nth(i).unwrap_or(f64::NAN));
+            columns.set_item(name, PyArray1::from_iter(py, values))?;
         }
         Ok(columns)
     }

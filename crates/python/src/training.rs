@@ -51,14 +51,8 @@ impl Observer for Teller {
                 News::Began { env_steps, path: self.path.clone(), names }
             }
             Event::Iteration(row) => {
-                let mut values = vec![
-                    row.iteration as f64,
-                    row.env_steps as f64,
-                    row.wall_s,
-                    row.discounted_return,
-                    row.undiscounted_return,
-                ];
-                values.extend(row.learner.iter().chain(&row.terms).chain(&row.design_totals));
+                let mut values = vec![row.iteration as f64, row.env_steps as f64];
+                values.extend(hwasp_runs::metrics::values(row));
                 let (answer, answered) = sync_channel(1);
                 if let Some(there) = &self.news
                     && there.send(News::Row(values, answer)).is_ok()

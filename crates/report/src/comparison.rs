@@ -15,7 +15,7 @@ use crate::figure::{gallery, picture};
 use crate::page::{KeyFigure, Page, Section};
 use crate::sections::curves::panels;
 use crate::sections::overview;
-use crate::sections::provenance::{command, origin};
+use crate::sections::provenance::{begun, command, origin};
 use crate::words::{decimal, decimals, duration, interval_or_none, sentence};
 
 /// Reads a comparison and lays out its report.
@@ -51,7 +51,7 @@ pub(super) fn page(folder: &Path, catalogue: &Catalogue) -> Result<Page, RunErro
         title: comparison.experiment.clone(),
         kind: "Comparison",
         lead: spec.description.clone(),
-        figures: key_figures(comparison),
+        figures: key_figures(comparison).into_iter().chain(typed.as_ref().map(|typed| begun("Begun", typed))).collect(),
         sections,
     })
 }
@@ -261,7 +261,7 @@ fn curves(saved: &SavedComparison) -> Markup {
     let design = saved.cells.first().map(|cell| &cell.summary.design);
     let groups = || design.into_iter().flatten().map(|(name, group)| (name.as_str(), group));
     let drawn = |x_axis: XAxis, id: &str, against: &str| {
-        let of = |cell: &CellResult| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0);
+        let of = |cell: &CellResult| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0).judged();
         let mut runs: Vec<Curve> = saved.cells.iter().map(of).collect();
         if x_axis == XAxis::WallClock {
             for run in &mut runs {

@@ -2,7 +2,6 @@
 
 use hwasp_core::{Batch, Port, Serial};
 use hwasp_plot::trace;
-use hwasp_runs::{RunError, SavedRun};
 use hwasp_training::{Assembly, EvaluateError, World, held_out, sampler};
 use maud::{Markup, html};
 
@@ -10,49 +9,56 @@ use crate::figure::{gallery, picture};
 use crate::film::{Request, film, takes};
 use crate::page::Section;
 use crate::run::Run;
+use crate::trials::Played;
 use crate::words::sentence;
 
 /// Bytes of the films of a page, at most.
 const MOST_BYTES: usize = 180_000;
 
-/// # Errors
-/// Of a policy that is missing or damaged. Where an episode cannot be run, for want of an engine for one, the page says so, and
-/// the rest of it stands.
-pub(super) fn section(run: &Run) -> Result<Section, RunError> {
+pub(super) fn section(run: &Run, played: &Result<Played, String>) -> Section {
     let title = if run.design.hand.is_some() { "How it grasps" } else { "How it moves" };
-    let body = match SavedRun::open(&run.path, run.spec.catalogue()) {
-        Ok(saved) => shown(run, saved.assembly(), &saved.params()?),
-        Err(RunError::Assemble(error)) => failed(&error),
-        Err(error) => return Err(error),
+    let body = match played {
+        Ok(played) => shown(run, played),
+        Err(error) => failed(error),
     };
-    Ok(Section { id: "episode", title, body })
+    Section { id: "episode", title, body }
 }
 
-fn failed(error: &dyn std::error::Error) -> Markup {
+fn failed(error: &str) -> Markup {
     html! { p { "No episode can be shown: " (error) "." } }
 }
 
-/// A film of what shows itself, and curves of an episode; what a hand sees is in its film.
-fn shown(run: &Run, assembly: &Assembly, params: &[f32]) -> Markup {
-    let seed = run.summary.evaluation.seed;
+/// A film of what shows itself, and curves of an episode; what a hand does is in its film, and in the chapter on the mechanism.
+fn shown(run: &Run, Played { saved, params, trials }: &Played) -> Markup {
+    let (assembly, seed) = (saved.assembly(), run.summary.evaluation.seed);
+    let episodes = trials.shown();
+    let chosen = (!episodes.is_empty()).then(|| {
+        format!(
+            "The first successes, each of another kind, and the first failures among {} episodes.",
+            trials.results.len()
+        )
+    });
     let request = Request {
         assembly,
         params,
         world: &assembly.worlds.deployment,
         design: &assembly.built(params),
         seed,
-        episodes: Vec::new(),
+        episodes,
     };
     let drawn = match takes(&request) {
         Ok(takes) => film(&takes, seed, MOST_BYTES),
-        Err(error) => return failed(&error),
+        Err(error) => return failed(&error.to_string()),
     };
     html! {
-        @if let Some(film) = drawn { (film) }
+        @if let Some(film) = drawn {
+            @if let Some(chosen) = chosen { p { (chosen) } }
+            (film)
+        }
         @if run.design.hand.is_none() {
             @match first_episode(assembly, params, seed) {
                 Ok(batch) => (curves(run, assembly, params, &batch)),
-                Err(error) => (failed(&error)),
+                Err(error) => (failed(&error.to_string())),
             }
         }
     }
@@ -102,7 +108,7 @@ fn curves(run: &Run, assembly: &Assembly, params: &[f32], batch: &Batch) -> Mark
 }
 
 /// What the law gave in each step, effort by effort.
-fn efforts(assembly: &Assembly, params: &[f32], batch: &Batch) -> Vec<(Port, Vec<f64>)> {
+pub(super) fn efforts(assembly: &Assembly, params: &[f32], batch: &Batch) -> Vec<(Port, Vec<f64>)> {
     let World { law, env, .. } = &assembly.worlds.deployment;
     let design = assembly.built(params);
     let reads = law.reads(&env.command).unwrap_or_default();
@@ -120,7 +126,8 @@ fn efforts(assembly: &Assembly, params: &[f32], batch: &Batch) -> Vec<(Port, Vec
     traces
 }
 
-fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, EvaluateError> {
+/// The first held-out episode, on the hardware as built.
+pub(super) fn first_episode(assembly: &Assembly, params: &[f32], seed: u64) -> Result<Batch, EvaluateError> {
     let design = assembly.built(params);
     let sampler = sampler(assembly, &assembly.worlds.deployment, &design)?;
     Ok(sampler.collect(&Serial, assembly.policy.controller_params(params), &held_out(seed, 0..1))?)

@@ -5,6 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
 const PLAYER: &str = include_str!("player.js");
+const PRINT: &str = include_str!("print.js");
 
 /// A chapter.
 pub(super) struct Section {
@@ -43,8 +44,8 @@ pub(super) struct Page {
 impl Page {
     /// The document as text.
     pub(super) fn html(self) -> String {
-        let policy =
-            format!("default-src 'none'; style-src '{}'; script-src '{}'", source_hash(STYLE), source_hash(PLAYER));
+        let [style, player, print] = [STYLE, PLAYER, PRINT].map(source_hash);
+        let policy = format!("default-src 'none'; style-src '{style}'; script-src '{player}' '{print}'");
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -79,6 +80,7 @@ impl Page {
                     }
                     footer { p { "Made by " code { "hwasp report" } ", version " (env!("CARGO_PKG_VERSION")) "." } }
                     script { (PreEscaped(PLAYER)) }
+                    script { (PreEscaped(PRINT)) }
                 }
             }
         };
@@ -97,7 +99,7 @@ mod tests {
         let sections = vec![Section { id: "one", title: "One", body: html! { p title=(evil) { (evil) } } }];
         let page = Page { title: evil.into(), kind: "Run", lead: evil.into(), figures, sections };
         let html = page.html();
-        assert_eq!(html.matches("<script").count(), 1, "{html}");
+        assert_eq!(html.matches("<script").count(), 2, "{html}");
         assert!(!html.contains("<script>alert") && html.contains("&lt;script&gt;alert(1)&lt;/script&gt;&quot;"));
     }
 }

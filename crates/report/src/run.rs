@@ -20,6 +20,8 @@ const BUILD: &str = "build";
 /// Everything that a run folder says.
 pub(super) struct Run {
     pub(super) path: PathBuf,
+    /// How links lead from the page to the folder: empty where the page lies in it, else with a slash at its end.
+    base: String,
     pub(super) spec: Experiment,
     /// The experiment as a file, every setting resolved.
     pub(super) experiment: String,
@@ -34,14 +36,15 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Reads a folder and checks that what it says fits together.
-    pub(super) fn open(path: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
+    /// Reads a folder and checks that what it says fits together, for a page that will lie in the folder `page`.
+    pub(super) fn open(path: &Path, page: &Path, catalogue: &Catalogue) -> Result<Self, RunError> {
         let spec = saved_experiment(path, &[], catalogue)?;
         let summary = saved_summary(path)?;
         same_run(&spec, (&summary.experiment, &summary.method, &summary.task, summary.seed), &path.join(SUMMARY))?;
         let (parts, tolerances) = (path.join(BUILD).join(PARTS), path.join(BUILD).join(TOLERANCES));
         let run = Self {
             path: path.to_owned(),
+            base: way(page, path),
             experiment: spec.to_toml().map_err(|e| encode(EXPERIMENT, &e))?,
             summary,
             design: DesignReport::open(path, catalogue)?,
@@ -66,10 +69,26 @@ impl Run {
         format!("{} · {} · seed {}", self.spec.name, self.spec.method.name(), self.spec.seed)
     }
 
+    /// The address of a file in the folder, as the page has it.
+    pub(super) fn link(&self, file: &str) -> String {
+        words::address(&format!("{}{file}", self.base))
+    }
+
     /// Its folder as one types it into a shell.
     pub(super) fn typed_path(&self) -> String {
         words::quoted(&self.path.to_string_lossy())
     }
+}
+
+/// How one comes from one folder to another: up and down again, with a slash at its end; nothing where they are one.
+fn way(from: &Path, to: &Path) -> String {
+    // A page that is not written yet may be to lie in a folder that is not there yet: it is taken by its name.
+    let whole = |path: &Path| std::fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_default();
+    let (from, to) = (whole(from), whole(to));
+    let common = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(common).map(|_| "..".to_owned());
+    let down = to.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    up.chain(down).map(|part| part + "/").collect()
 }
 
 /// Whether a file is about the run that it lies with.
@@ -87,4 +106,17 @@ fn same_run(
         run.0, run.1, run.3, run.2
     );
     Err(RunError::Decode { path: file.to_owned(), message })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_up_and_down_again() {
+        let of = |from: &str, to: &str| way(Path::new(from), Path::new(to));
+        assert_eq!(of("/nowhere/runs/one", "/nowhere/runs/one"), "");
+        assert_eq!(of("/nowhere/pages", "/nowhere/runs/one"), "../runs/one/");
+        assert_eq!(of("/nowhere/runs/one/pages", "/nowhere/runs/one"), "../");
+    }
 }

@@ -1,5 +1,7 @@
 //! Figures as a reader of prose likes them.
 
+use std::fmt::Write as _;
+
 use hwasp_training::stats::Interval;
 use hwasp_training::{MeanInterval, SuccessRate};
 
@@ -80,6 +82,19 @@ pub(super) fn quoted(word: &str) -> String {
     }
 }
 
+/// A path as an address has it, relative to a page.
+pub(super) fn address(path: &str) -> String {
+    let mut address = String::with_capacity(path.len());
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-_./~".contains(&byte) {
+            address.push(byte.into());
+        } else {
+            let _ = write!(address, "%{byte:02X}");
+        }
+    }
+    address
+}
+
 /// A time in the units that one would say.
 pub(super) fn duration(seconds: f64) -> String {
     let whole = seconds.max(0.0).round() as u64;
@@ -131,6 +146,12 @@ mod tests {
             [decimal(-2.55, 1), decimal(-0.04, 1), change(3.0, 0), change(-0.04, 1)],
             ["\u{2212}2.5", "0.0", "+3", "0.0"]
         );
+    }
+
+    #[test]
+    fn addresses_have_no_characters_of_their_own() {
+        assert_eq!(address("../my run/a#b%.svg"), "../my%20run/a%23b%25.svg");
+        assert_eq!(address("javascript:alert(1)"), "javascript%3Aalert%281%29");
     }
 
     #[test]

@@ -7,11 +7,15 @@
 //! | `wall_s` | time since training began | s |
 //! | `discounted_return` | mean over this iteration's training episodes | reward |
 //! | `return` | the same, undiscounted | reward |
+//! | `episodes` | training episodes that came to their end in this iteration: the returns are their means | - |
+//! | `episode_steps` | their mean length | steps |
+//! | `noise.command`, `noise.effort`, `noise.design` | how strongly the policy explores after the update: the mean standard deviation of commands, of efforts, of design parameters in the action; `NaN` where the action has none, and in a search | share of the range, SI, share of the range |
 //! | one per metric of the learner, such as `learner.kl`; none in a search | what an update did, by the learner's own names | the learner's |
 //! | one per named term of the reward, such as `reward.forward`; none where a search trains its candidates | its sum over an episode, a mean as `return` is | reward |
 //! | one per design total, such as `stiffness_total` | the sum of a design group | SI |
 //!
-//! Tables that were written before learners had names of their own have `kl`, `entropy` and `step_fraction` behind `return`;
+//! Tables of earlier versions are read, too: those without the columns from `episodes` to `noise.design` have `NaN` there. Tables that
+//! were written before learners had names of their own have `kl`, `entropy` and `step_fraction` behind `return`;
 //! they are read as metrics of these names.
 //!
 //! No field is ever quoted. Numbers are written in the shortest form that reads back to the same bits; what is not
@@ -23,7 +27,7 @@ use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
 
 use error::shorten;
-use hwasp_core::MOST_TERMS;
+use hwasp_core::{MOST_TERMS, NoiseSizes};
 use hwasp_experiment::MOST_GROUPS;
 use hwasp_training::MetricsRow;
 use serde::{Deserialize, Serialize};
@@ -32,7 +36,20 @@ pub use error::MetricsError;
 
 /// The columns that every table has, in order; the learner's metrics, the terms of the reward and the design totals
 /// follow.
-pub const FIXED_COLUMNS: [&str; 5] = ["iteration", "env_steps", "wall_s", "discounted_return", "return"];
+pub const FIXED_COLUMNS: [&str; 10] = [
+    "iteration",
+    "env_steps",
+    "wall_s",
+    "discounted_return",
+    "return",
+    "episodes",
+    "episode_steps",
+    "noise.command",
+    "noise.effort",
+    "noise.design",
+];
+/// How many of them tables of earlier versions have.
+const EARLIER_FIXED: usize = 5;
 /// What the column of a learner's metric begins with.
 pub const LEARNER: &str = "learner.";
 /// What the column of a term of the reward begins with.
@@ -100,8 +117,7 @@ impl<W: Write> MetricsWriter<W> {
             return Err(MetricsError::Fields { line: 0, found, expected });
         }
         let mut text = format!("{},{}", row.iteration, row.env_steps);
-        let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
-        for value in fixed.iter().chain(&row.learner).chain(&row.terms).chain(&row.design_totals) {
+        for value in values(row) {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let _ = write!(text, ",{value:?}");
         }
@@ -127,6 +143,14 @@ impl<W: Write> MetricsWriter<W> {
         self.out.write_all(format!("{text}\n").as_bytes())?;
         Ok(self.out.flush()?)
     }
+}
+
+/// The values of a row behind `iteration` and `env_steps`, in the order of the columns.
+pub fn values(row: &MetricsRow) -> impl Iterator<Item = f64> {
+    let NoiseSizes { command, effort, design } = row.noise;
+    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.episodes, row.episode_steps];
+    let own = row.learner.iter().chain(&row.terms).chain(&row.design_totals).copied();
+    fixed.into_iter().chain([command, effort, design]).chain(own)
 }
 
 /// A table read back.
@@ -156,11 +180,11 @@ impl MetricsTable {
     /// Reads the rows before an iteration, and nothing of what comes behind the last of them.
     pub fn read_before(input: impl io::Read, iteration: u64) -> Result<Self, MetricsError> {
         let mut lines = Lines { input: io::BufReader::new(input), number: 0, unfinished: None, buffer: Vec::new() };
-        let mut table = read_header(lines.next()?.unwrap_or(""))?;
+        let (mut table, fixed) = read_header(lines.next()?.unwrap_or(""))?;
         let mut before = 0;
         while table.rows.last().map_or(0, |row| row.iteration.saturating_add(1)) < iteration {
             let Some(text) = lines.next()? else { break };
-            let row = read_row(text, &table).map_err(|e| e.at(lines.number))?;
+            let row = read_row(text, fixed, &table).map_err(|e| e.at(lines.number))?;
             if row.env_steps < before {
                 return Err(MetricsError::Backwards { line: lines.number, before, after: row.env_steps });
             }
@@ -233,17 +257,19 @@ fn check_names<S: AsRef<str>>(names: &[S], taken: impl Fn(&str) -> bool) -> Resu
     Ok(())
 }
 
-/// A table without rows that has the columns of this header.
-fn read_header(text: &str) -> Result<MetricsTable, MetricsError> {
+/// A table without rows that has the columns of this header, and how many of the fixed ones there are.
+fn read_header(text: &str) -> Result<(MetricsTable, usize), MetricsError> {
     // A table saved by a spreadsheet may begin with a byte-order mark.
     let names: Vec<&str> = text.trim_start_matches('\u{feff}').split(',').collect();
-    for (place, expected) in FIXED_COLUMNS.into_iter().enumerate() {
+    let earlier = names.get(EARLIER_FIXED) != Some(&FIXED_COLUMNS[EARLIER_FIXED]);
+    let fixed = if earlier { EARLIER_FIXED } else { FIXED_COLUMNS.len() };
+    for (place, expected) in FIXED_COLUMNS.into_iter().enumerate().take(fixed) {
         let found = names.get(place).copied().unwrap_or("");
         if found != expected {
             return Err(MetricsError::Header { column: place + 1, found: shorten(found), expected });
         }
     }
-    let rest = &names[FIXED_COLUMNS.len()..];
+    let rest = &names[fixed..];
     let those_of = |prefix: &str, names: &[&str]| -> Vec<String> {
         names.iter().map_while(|name| name.strip_prefix(prefix)).map(str::to_owned).collect()
     };
@@ -253,13 +279,13 @@ fn read_header(text: &str) -> Result<MetricsTable, MetricsError> {
     let terms = those_of(TERM, rest);
     let design_totals: Vec<String> = rest[terms.len()..].iter().map(|&name| name.to_owned()).collect();
     check_columns(&learner, &terms, &design_totals)?;
-    Ok(MetricsTable { learner, terms, design_totals, ..MetricsTable::default() })
+    Ok((MetricsTable { learner, terms, design_totals, ..MetricsTable::default() }, fixed))
 }
 
 /// Reads one row; the errors name line 0 until [`MetricsError::at`] says which it was.
-fn read_row(text: &str, table: &MetricsTable) -> Result<MetricsRow, MetricsError> {
+fn read_row(text: &str, fixed: usize, table: &MetricsTable) -> Result<MetricsRow, MetricsError> {
     let own = table.learner.iter().chain(&table.terms).chain(&table.design_totals);
-    let names = FIXED_COLUMNS.into_iter().chain(own.map(String::as_str));
+    let names = FIXED_COLUMNS.into_iter().take(fixed).chain(own.map(String::as_str));
     let (found, expected) = (text.split(',').count(), names.clone().count());
     if found != expected {
         return Err(MetricsError::Fields { line: 0, found, expected });
@@ -283,12 +309,21 @@ fn read_row(text: &str, table: &MetricsTable) -> Result<MetricsRow, MetricsError
         // `-NaN` can be read, but is never written: of what is not known there is but one kind.
         value.map(|value| if value.is_nan() { f64::NAN } else { value })
     };
+    let (wall_s, discounted_return, undiscounted_return) = (real()?, real()?, real()?);
+    let mut later = [f64::NAN; FIXED_COLUMNS.len() - EARLIER_FIXED];
+    for value in later.iter_mut().take(fixed - EARLIER_FIXED) {
+        *value = real()?;
+    }
+    let [episodes, episode_steps, command, effort, design] = later;
     Ok(MetricsRow {
         iteration,
         env_steps,
-        wall_s: real()?,
-        discounted_return: real()?,
-        undiscounted_return: real()?,
+        wall_s,
+        discounted_return,
+        undiscounted_return,
+        episodes,
+        episode_steps,
+        noise: NoiseSizes { command, effort, design },
         learner: table.learner.iter().map(|_| real()).collect::<Result<_, _>>()?,
         terms: table.terms.iter().map(|_| real()).collect::<Result<_, _>>()?,
         design_totals: table.design_totals.iter().map(|_| real()).collect::<Result<_, _>>()?,

@@ -16,7 +16,9 @@
 //! | tag | meaning | steps |
 //! |---|---|---|
 //! | `train/return`, `train/discounted_return` | as in [`metrics`](crate::metrics) | every iteration |
+//! | `train/episodes`, `train/episode_steps`, `noise/command`, `noise/effort`, `noise/design` | as there; those that are not known are left out | every iteration |
 //! | `train/…`, such as `train/kl` | the learner's metrics, by its own names | every iteration |
+//! | `reward/…`, such as `reward/forward` | the terms of the reward | every iteration |
 //! | `design/…`, such as `design/stiffness_total` | the design totals, SI | every iteration |
 //! | `evaluation/return`, `evaluation/discounted_return` | the means of the evaluation | the last |
 //! | `evaluation/median_discounted_return`, `evaluation/worst_discounted_return` | over its episodes | the last |
@@ -131,8 +133,15 @@ impl Observer for TensorBoard {
             }
             Event::Iteration(row) => {
                 self.env_steps = row.env_steps;
-                let train =
-                    [("train/return", row.undiscounted_return), ("train/discounted_return", row.discounted_return)];
+                let train = [
+                    ("train/return", row.undiscounted_return),
+                    ("train/discounted_return", row.discounted_return),
+                    ("train/episodes", row.episodes),
+                    ("train/episode_steps", row.episode_steps),
+                    ("noise/command", row.noise.command),
+                    ("noise/effort", row.noise.effort),
+                    ("noise/design", row.noise.design),
+                ];
                 let tags = self.tags.clone();
                 let values = row.learner.iter().chain(&row.terms).chain(&row.design_totals).copied();
                 self.scalars(train.into_iter().chain(tags.iter().map(String::as_str).zip(values)))

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-use hwasp_runs::metrics::{Columns, FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter};
+use hwasp_core::NoiseSizes;
+use hwasp_runs::metrics::{Columns, FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter, values};
 use hwasp_training::MetricsRow;
 
 fn row(iteration: u64, values: [f64; 9]) -> MetricsRow {
@@ -12,6 +13,9 @@ fn row(iteration: u64, values: [f64; 9]) -> MetricsRow {
         wall_s: values[0],
         discounted_return: values[1],
         undiscounted_return: values[2],
+        episodes: values[1],
+        episode_steps: values[2],
+        noise: NoiseSizes { command: values[3], effort: values[4], design: values[5] },
         learner: values[3..6].to_vec(),
         terms: values[6..7].to_vec(),
         design_totals: values[7..].to_vec(),
@@ -49,8 +53,8 @@ fn read(text: impl AsRef<[u8]>) -> Result<MetricsTable, MetricsError> {
 /// `-NaN` was read with its sign, which is not written.
 #[test]
 fn there_is_but_one_kind_of_unknown() {
-    let table = read(header() + "0,1,-NaN,nan,+NaN,NaN,-nan,0,1\n").unwrap();
-    assert!(bits(&table.rows[0])[..5].iter().all(|&b| b == f64::NAN.to_bits()));
+    let table = read(header() + "0,1,-NaN,nan,+NaN,NaN,-nan,nan,NaN,-NaN,nan,nan,0,1\n").unwrap();
+    assert!(bits(&table.rows[0])[..10].iter().all(|&b| b == f64::NAN.to_bits()));
 }
 
 /// The message for a body under a good header.
@@ -59,8 +63,7 @@ fn message(body: &str) -> String {
 }
 
 fn bits(row: &MetricsRow) -> Vec<u64> {
-    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return];
-    fixed.iter().chain(&row.learner).chain(&row.terms).chain(&row.design_totals).map(|v| v.to_bits()).collect()
+    values(row).map(f64::to_bits).collect()
 }
 
 #[test]
@@ -88,8 +91,9 @@ fn the_text_is_plain_and_short() {
         .unwrap();
     assert_eq!(
         text,
-        "iteration,env_steps,wall_s,discounted_return,return,learner.kl,learner.entropy,learner.grad.norm,reward.forward,stiffness_total,length_total\n\
-         0,4000,0.5,-1125.53,-10811.25,NaN,3.0,0.8,12.5,65.5,1e-9\n"
+        "iteration,env_steps,wall_s,discounted_return,return,episodes,episode_steps,noise.command,noise.effort,noise.design,\
+         learner.kl,learner.entropy,learner.grad.norm,reward.forward,stiffness_total,length_total\n\
+         0,4000,0.5,-1125.53,-10811.25,-1125.53,-10811.25,NaN,3.0,0.8,NaN,3.0,0.8,12.5,65.5,1e-9\n"
     );
     assert!(read(text).unwrap().rows[0].learner[0].is_nan());
 }
@@ -114,21 +118,27 @@ fn an_unfinished_line_is_left_out_and_reported() {
 
 #[test]
 fn line_ends_and_marks_of_other_programs_are_read() {
-    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3\r\n", FIXED_COLUMNS.join(","))).unwrap();
+    let table = read(format!("\u{feff}{}\r\n0,4000,1,2,3,4,5,6,7,8\r\n", FIXED_COLUMNS.join(","))).unwrap();
     assert_eq!((table.rows.len(), table.rows[0].undiscounted_return), (1, 3.0));
 }
 
 #[test]
 fn faults_are_named_with_their_line() {
-    let good = "0,4000,1,2,3,4,5,6,7\n";
-    assert_eq!(message(&format!("{good}1,8000,1,2\n")), "line 3 has 4 fields, the header has 9");
-    assert_eq!(message("0,4000,1,2,3,4,5,6,7,8\n"), "line 2 has 10 fields, the header has 9");
-    assert_eq!(message("\n"), "line 2 has 1 fields, the header has 9");
-    assert_eq!(message("0,-1,1,2,3,4,5,6,7\n"), "line 2: `-1` in column `env_steps` is not a whole number from 0");
-    assert_eq!(message("0,4000,1,fast,3,4,5,6,7\n"), "line 2: `fast` in column `discounted_return` is not a number");
-    assert_eq!(message("0,4000,1,2,3,4,5,6,\n"), "line 2: `` in column `stiffness_total` is not a number");
+    let good = "0,4000,1,2,3,4,5,6,7,8,9,10,11,12\n";
+    assert_eq!(message(&format!("{good}1,8000,1,2\n")), "line 3 has 4 fields, the header has 14");
+    assert_eq!(message("0,4000,1,2,3,4,5,6,7,8,9,10,11,12,13\n"), "line 2 has 15 fields, the header has 14");
+    assert_eq!(message("\n"), "line 2 has 1 fields, the header has 14");
     assert_eq!(
-        message(&format!("{good}1,3999,1,2,3,4,5,6,7\n")),
+        message("0,-1,1,2,3,4,5,6,7,8,9,10,11,12\n"),
+        "line 2: `-1` in column `env_steps` is not a whole number from 0"
+    );
+    assert_eq!(
+        message("0,4000,1,fast,3,4,5,6,7,8,9,10,11,12\n"),
+        "line 2: `fast` in column `discounted_return` is not a number"
+    );
+    assert_eq!(message("0,4000,1,2,3,4,5,6,7,8,9,10,11,\n"), "line 2: `` in column `stiffness_total` is not a number");
+    assert_eq!(
+        message(&format!("{good}1,3999,1,2,3,4,5,6,7,8,9,10,11,12\n")),
         "line 3: env_steps falls from 4000 to 3999; a table holds one run, in order"
     );
 }
@@ -142,7 +152,7 @@ fn what_is_no_metrics_table_is_refused() {
     assert!(matches!(of(&[0xff, 0xfe, b'\n']), MetricsError::Text { line: 1 }));
     assert!(matches!(of(&vec![b'x'; 10 * LONGEST_LINE]), MetricsError::Long { line: 1 }));
     // Escapes must not reach a terminal, nor a whole file an error message.
-    let escape = message(&format!("0,4000,\u{1b}[31m{},2,3,4,5,6,7\n", "x".repeat(4000)));
+    let escape = message(&format!("0,4000,\u{1b}[31m{},2,3,4,5,6,7,8,9,10,11,12\n", "x".repeat(4000)));
     assert!(!escape.contains('\u{1b}') && escape.len() < 200, "{escape}");
 }
 
@@ -157,7 +167,7 @@ fn rows_without_end_are_refused() {
     struct Rows(u64);
     impl std::io::Read for Rows {
         fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-            let row = b"0,0,0,0,0\n";
+            let row = b"0,0,0,0,0,0,0,0,0,0\n";
             let count = buffer.len().min(1 << 16) / row.len();
             assert!(count > 0 && self.0 < 10_000_000, "the reader does not stop");
             for place in buffer.chunks_exact_mut(row.len()).take(count) {
@@ -174,7 +184,8 @@ fn rows_without_end_are_refused() {
 #[test]
 fn names_that_break_a_header_are_refused() {
     let long = "x".repeat(65);
-    for name in ["", "a,b", "a\nb", "\"a\"", "return", "entropy", "learner.kl", "reward.alive", " a", &long] {
+    for name in ["", "a,b", "a\nb", "\"a\"", "return", "episodes", "entropy", "learner.kl", "reward.alive", " a", &long]
+    {
         assert!(matches!(table(&[], &[], &[name]), Err(MetricsError::Name { .. })), "{name}");
         let text = format!("{},{name}\n", FIXED_COLUMNS.join(","));
         assert!(["a,b", "learner.kl", "reward.alive"].contains(&name) || read(text).is_err(), "{name}");
@@ -201,7 +212,7 @@ fn names_that_break_a_header_are_refused() {
 #[test]
 fn a_row_of_another_table_is_not_written() {
     let mut writer = table(&LEARNER, &[], &["stiffness_total"]).unwrap();
-    assert!(matches!(writer.append(&row(0, [0.0; 9])), Err(MetricsError::Fields { found: 11, expected: 9, .. })));
+    assert!(matches!(writer.append(&row(0, [0.0; 9])), Err(MetricsError::Fields { found: 16, expected: 14, .. })));
     assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), header());
 }
 
@@ -219,14 +230,29 @@ fn tables_of_earlier_versions_are_read() {
     assert_eq!((&*table.rows[0].learner, &*table.rows[0].design_totals), (&[4.0, 5.0, 6.0][..], &[7.0][..]));
     assert_eq!(table.metric("kl").unwrap().collect::<Vec<_>>(), [4.0]);
     assert!(table.metric("grad_norm").is_none());
+    let row = &table.rows[0];
+    assert!(row.episodes.is_nan() && row.episode_steps.is_nan() && row.noise.command.is_nan());
+}
+
+/// What an earlier version wrote, with the learner's own names: between `return` and `learner.kl` there was nothing.
+#[test]
+fn tables_without_lengths_of_episodes_are_read() {
+    let text = "iteration,env_steps,wall_s,discounted_return,return,learner.kl,reward.place,gear\n0,1200,1,2,3,4,5,6\n";
+    let table = read(text).unwrap();
+    let row = &table.rows[0];
+    assert_eq!(
+        (row.undiscounted_return, &*row.learner, &*row.terms, &*row.design_totals),
+        (3.0, &[4.0][..], &[5.0][..], &[6.0][..])
+    );
+    assert!(row.episodes.is_nan() && row.episode_steps.is_nan() && row.noise.design.is_nan());
+    let half = "iteration,env_steps,wall_s,discounted_return,return,episodes,gear\n";
+    let error = read(half).unwrap_err().to_string();
+    assert!(error.contains("column 7 is `gear`, expected `episode_steps`"), "{error}");
 }
 
 /// What a search writes has no column of a learner.
 #[test]
 fn a_search_has_no_metrics_of_a_learner() {
     let writer = table(&[], &[], &["gear"]).unwrap();
-    assert_eq!(
-        String::from_utf8(writer.into_inner()).unwrap(),
-        "iteration,env_steps,wall_s,discounted_return,return,gear\n"
-    );
+    assert_eq!(String::from_utf8(writer.into_inner()).unwrap(), format!("{},gear\n", FIXED_COLUMNS.join(",")));
 }

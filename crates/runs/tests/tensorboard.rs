@@ -121,11 +121,17 @@ fn a_training_can_be_read_back() {
         let train = [
             ("train/return", row.undiscounted_return),
             ("train/discounted_return", row.discounted_return),
+            ("train/episodes", row.episodes),
+            ("train/episode_steps", row.episode_steps),
+            ("noise/command", row.noise.command),
+            ("noise/effort", row.noise.effort),
             ("train/kl", row.learner[0]),
             ("train/entropy", row.learner[1]),
             ("train/clip_fraction", row.learner[2]),
             ("train/grad_norm", row.learner[3]),
             ("train/epochs", row.learner[4]),
+            ("train/value_loss", row.learner[5]),
+            ("train/explained_variance", row.learner[6]),
             ("design/gear", row.design_totals[0]),
         ];
         expected.push((row.env_steps, train.to_vec()));
@@ -157,11 +163,11 @@ fn what_is_not_finite_is_left_out() {
         iteration: 0,
         env_steps: 5,
         wall_s: 1.0,
-        discounted_return: f64::NAN,
         undiscounted_return: -1.5,
         learner: vec![f64::INFINITY, 0.5],
         terms: vec![7.0],
         design_totals: vec![f64::NEG_INFINITY],
+        ..MetricsRow::default()
     };
     board.on(Event::Iteration(&row)).unwrap();
     (row.undiscounted_return, row.learner[1], row.terms[0]) = (f64::NAN, 1e300, f64::NAN);

@@ -244,12 +244,8 @@ mod tests {
         let row = |(i, &(env_steps, discounted_return)): (usize, &(u64, f64))| MetricsRow {
             iteration: i as u64,
             env_steps,
-            wall_s: 0.0,
             discounted_return,
-            undiscounted_return: 0.0,
-            learner: vec![],
-            terms: vec![],
-            design_totals: vec![],
+            ..MetricsRow::default()
         };
         MetricsTable { rows: rows.iter().enumerate().map(row).collect(), ..MetricsTable::default() }
     }

@@ -40,7 +40,7 @@ impl Comparison {
                 continue;
             }
             let runs: Vec<Curve> =
-                cells.iter().map(|cell| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0)).collect();
+                cells.iter().map(|cell| Curve::from_table(&cell.label, &cell.metrics, x_axis, 0).judged()).collect();
             let title = self.experiment.clone();
             let options = PlotOptions { title, x_axis, band: Band::Bootstrap, asked: self.asked(), ..options.clone() };
             files.push((name, curves(&runs, &options)?.svg.into_bytes()));

@@ -173,7 +173,9 @@ impl std::fmt::Display for What {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Total => f.write_str("total"),
-            Self::ReturnAt(steps) => write!(f, "training return at {} million real steps", steps / 1_000_000),
+            Self::ReturnAt(steps) => {
+                write!(f, "discounted return of training at {} million real steps", steps / 1_000_000)
+            }
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::collect::{Collector, EpisodesRequest, ExperimentText};
 use crate::error::TrainError;
 use crate::learned::{Learned, LoopContext};
 use crate::observer::{Event, FailedIteration};
-use crate::returns::{Returns, mean_terms};
+use crate::returns::{Ended, Returns, mean_terms};
 use crate::running::Running;
 
 /// Iterations in a row in which the physics of most episodes may fail.
@@ -133,11 +133,14 @@ impl<'a> Gradient<'a> {
             self.learn(run.executor, &mut batch)
         };
         let update = update.or_else(|error| self.fail(Some(&batch), error, run))?;
+        let spec = self.assembly.experiment();
+        let progress = spec.train.progress(self.learned.env_steps);
+        let noise = self.assembly.policy.noise_sizes(self.learner.params(), progress);
         self.learned.env_steps = env_steps;
         self.learned.discarded_episodes += batch.faults.len() as u64;
         let totals = self.assembly.totals(self.learner.params());
-        let returns = whole_returns(&batch, self.assembly.experiment().discount());
-        Ok(self.learned.record(returns, update.values().to_vec(), totals, run)?)
+        let ended = ended(&batch, spec.discount());
+        Ok(self.learned.record(ended, (update.values().to_vec(), noise), totals, run)?)
     }
 
     /// Learns, and meanwhile runs the next iteration's episodes, with the parameters from before.
@@ -296,19 +299,21 @@ fn request(
     }
 }
 
-/// What the episodes of a batch came to that ended by themselves; none where there is no such episode.
-fn whole_returns(batch: &Batch, discount: f64) -> Option<Returns> {
+/// The episodes of a batch that ended by themselves.
+fn ended(batch: &Batch, discount: f64) -> Ended {
     let whole = || batch.episodes.iter().filter(|episode| !episode.cut);
     let count = whole().count() as f64;
     let mean = |returns: Vec<f64>| {
         let whole_ones = returns.iter().zip(&batch.episodes).filter(|(_, episode)| !episode.cut);
         whole_ones.map(|(total, _)| total).sum::<f64>() / count
     };
-    (count > 0.0).then(|| Returns {
+    let returns = (count > 0.0).then(|| Returns {
         discounted: mean(batch.returns(discount)),
         undiscounted: mean(batch.returns(1.0)),
         terms: mean_terms(&whole().map(|episode| &*episode.terms).collect::<Vec<_>>()),
-    })
+    });
+    let steps: usize = whole().map(|episode| episode.rows.len()).sum();
+    Ended { episodes: count, steps: steps as f64 / count, returns }
 }
 
 /// The iteration that follows a state once more: its batch, where it came so far, and what the update said.

@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use hwasp_algos::{Archive, Exchange, Persist, StateError};
-use hwasp_core::Executor;
+use hwasp_core::{Executor, NoiseSizes};
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
 use crate::collect::{Collector, ExperimentText};
 use crate::metrics::MetricsRow;
 use crate::observer::{Event, Observer, ObserverError};
-use crate::returns::Returns;
+use crate::returns::{Ended, Returns};
 
 /// Iterations over which the final training return is averaged, as the paper's curves are.
 pub const TRAILING: usize = 11;
@@ -93,12 +93,11 @@ pub(crate) struct Learned {
 }
 
 impl Learned {
-    /// Counts an iteration whose steps are counted already, and hands its row on; a search has no metrics of a learner. There
-    /// are no returns where no episode came to its end.
+    /// Counts an iteration whose steps are counted already, and hands its row on; a search has no metrics of a learner, and no noise.
     pub(crate) fn record(
         &mut self,
-        returns: Option<Returns>,
-        mut learner: Vec<f64>,
+        Ended { episodes, steps, returns }: Ended,
+        (mut learner, noise): (Vec<f64>, NoiseSizes),
         design_totals: Vec<f64>,
         run: &mut LoopContext<'_>,
     ) -> Result<(), ObserverError> {
@@ -117,6 +116,9 @@ impl Learned {
             wall_s: self.wall_s,
             discounted_return: discounted,
             undiscounted_return: undiscounted,
+            episodes,
+            episode_steps: steps,
+            noise,
             learner,
             terms,
             design_totals,

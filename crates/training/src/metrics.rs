@@ -1,6 +1,6 @@
 //! One row of a learning curve: what an iteration came to.
 
-use hwasp_core::bits;
+use hwasp_core::{NoiseSizes, bits};
 use serde::{Deserialize, Serialize};
 
 /// One iteration; what is not known is NaN.
@@ -19,6 +19,15 @@ pub struct MetricsRow {
     /// Mean undiscounted return of the same episodes (column `return`).
     #[serde(with = "bits")]
     pub undiscounted_return: f64,
+    /// Training episodes that came to their end in this iteration: the returns are their means.
+    #[serde(default = "unknown", with = "bits")]
+    pub episodes: f64,
+    /// Their mean length, steps.
+    #[serde(default = "unknown", with = "bits")]
+    pub episode_steps: f64,
+    /// How strongly the policy explores after the update; all NaN in a search, whose noise is in the parameters.
+    #[serde(default)]
+    pub noise: NoiseSizes,
     /// One per metric of the learner, in the order of their names ([`Event::Started`](crate::Event)); none in a search.
     #[serde(with = "bits")]
     pub learner: Vec<f64>,
@@ -29,4 +38,28 @@ pub struct MetricsRow {
     /// One per design total of the table, in its order, SI.
     #[serde(with = "bits")]
     pub design_totals: Vec<f64>,
+}
+
+/// Nothing is known.
+impl Default for MetricsRow {
+    fn default() -> Self {
+        Self {
+            iteration: 0,
+            env_steps: 0,
+            wall_s: f64::NAN,
+            discounted_return: f64::NAN,
+            undiscounted_return: f64::NAN,
+            episodes: f64::NAN,
+            episode_steps: f64::NAN,
+            noise: NoiseSizes::default(),
+            learner: Vec::new(),
+            terms: Vec::new(),
+            design_totals: Vec::new(),
+        }
+    }
+}
+
+/// What a row of an earlier version has not.
+fn unknown() -> f64 {
+    f64::NAN
 }

@@ -1,5 +1,16 @@
 //! What episodes came to.
 
+/// The episodes of an iteration that came to their end.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ended {
+    /// How many; NaN where nobody counted.
+    pub(crate) episodes: f64,
+    /// Their mean length, steps; NaN where there is none.
+    pub(crate) steps: f64,
+    /// What they came to; none where there is none.
+    pub(crate) returns: Option<Returns>,
+}
+
 /// What episodes came to, on average.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Returns {

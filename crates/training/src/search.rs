@@ -5,6 +5,7 @@ mod space;
 mod state;
 
 use hwasp_algos::Archive;
+use hwasp_core::NoiseSizes;
 
 use self::generation::{Generation, Scoring};
 use self::space::SearchSpace;
@@ -13,7 +14,7 @@ use crate::assemble::{Assembly, FINAL_EPISODES};
 use crate::error::TrainError;
 use crate::learned::{Learned, LoopContext};
 use crate::observer::Event;
-use crate::returns::Returns;
+use crate::returns::{Ended, Returns};
 
 /// Searches until the budget holds no further generation, or no part of one, from the beginning or from where a search was
 /// interrupted.
@@ -72,6 +73,12 @@ fn tell(
     state.search.tell(&scores)?;
     let sound: Vec<&Returns> = scored.iter().filter_map(|candidate| candidate.returns.as_ref()).collect();
     let returns = (!sound.is_empty()).then(|| Returns::mean(&sound));
+    // Of a candidate's training the episodes are not counted.
+    let spec = space.assembly.experiment();
+    let each = if spec.method.trains_inside() { f64::NAN } else { spec.search.episodes as f64 };
+    let episodes = each * sound.len() as f64;
+    let steps: u64 = scored.iter().filter(|candidate| candidate.returns.is_some()).map(|sound| sound.env_steps).sum();
+    let ended = Ended { episodes, steps: steps as f64 / episodes, returns };
     for (candidate, score) in scored.into_iter().zip(scores) {
         if state.best.as_ref().is_none_or(|(most, _)| score > *most) {
             state.best = Some((score, candidate.params));
@@ -79,7 +86,7 @@ fn tell(
     }
     let policy = &space.assembly.policy;
     let totals = policy.space().totals(&policy.design(&space.params(&state.search.center())));
-    Ok(learned.record(returns, Vec::new(), totals, run)?)
+    Ok(learned.record(ended, (Vec::new(), NoiseSizes::default()), totals, run)?)
 }
 
 /// How many candidates failed. The first of a search is kept and warned of; where all of a generation failed and they may not, it

@@ -85,6 +85,10 @@ fn iterations_may_be_counted_in_steps() {
     assert_eq!(steps, [1000, 2000, 3000, 4000, 5000, 6000, 7000, 8000, 9000, 9600]);
     assert_eq!((trained.env_steps, trained.iterations), (9600, 10));
     assert!(kept.rows.iter().all(|row| row.undiscounted_return.is_finite()));
+    // Those that are cut do not count; in 85 or 86 steps there are two whole ones.
+    let ended: Vec<(f64, f64)> = kept.rows.iter().map(|row| (row.episodes, row.episode_steps)).collect();
+    assert_eq!(ended, [[(28.0, 30.0); 9].as_slice(), &[(14.0, 30.0)]].concat());
+    assert!(kept.rows.iter().all(|row| row.noise.command > 0.0));
     for (given, taken, iterations, last) in
         [("1000", 1000, 1, 1000), ("1499", 1499, 1, 1499), ("1500", 1500, 2, 500), ("2501", 2501, 3, 501)]
     {
@@ -106,6 +110,7 @@ fn where_no_episode_ends_there_is_no_return() {
     assert_eq!(assembly.experiment().train.short_lanes(), Some(20));
     let (trained, kept) = run(&assembly, None, 1);
     assert!(kept.rows.len() == 8 && kept.rows.iter().all(|row| row.undiscounted_return.is_nan()));
+    assert!(kept.rows.iter().all(|row| row.episodes == 0.0 && row.episode_steps.is_nan()));
     assert!(trained.training_return.is_nan() && trained.evaluation.undiscounted_return.mean.is_finite());
     assert!(kept.checkpoints.iter().all(|checkpoint| checkpoint.training_return.is_none()));
     let resumed = run(&assembly, Some(&kept.checkpoints[2]), 2).0;

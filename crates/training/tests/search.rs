@@ -61,6 +61,13 @@ fn the_ledger_counts_every_step() {
     let count = |method, settings: &[_]| {
         let (trained, rows) = run(&assembly(method, settings).unwrap(), 1);
         assert_eq!(rows.len() as u64, trained.iterations);
+        // All candidates' episodes are told; those of trainings inside are not counted.
+        let told = match method {
+            "cmaes" => "episodes: 18.0, episode_steps: 30.0",
+            "ars" => "episodes: 20.0, episode_steps: 30.0",
+            _ => "episodes: NaN, episode_steps: NaN",
+        };
+        assert!(rows[0].contains(told), "{method}: {}", rows[0]);
         (trained.iterations, trained.env_steps)
     };
     let steps = hwasp_testing::resolve(hwasp_testing::layers("reach"), None).unwrap().train.episode_steps as u64;

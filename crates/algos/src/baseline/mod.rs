@@ -11,7 +11,7 @@ use hwasp_core::{Batch, Executor, Policy};
 use serde::{Deserialize, Serialize};
 
 use crate::archive::{Exchange, Persist, StateError};
-use crate::gae::{AdvantageConfig, Advantages, advantages, normalize};
+use crate::gae::{AdvantageConfig, Advantages, Foresight, advantages, normalize};
 use crate::learner::LearnError;
 
 /// Which baseline.
@@ -95,10 +95,19 @@ impl Baseline {
         if !targets.advantage.iter().all(|a| a.is_finite()) {
             return Err(LearnError::NotFinite { what: "an advantage", iteration });
         }
+        targets.foresight = Foresight::of(&values, self.learns(&targets));
         if config.normalize {
             normalize(&mut targets.advantage);
         }
         Ok(targets)
+    }
+
+    /// What of them it learns.
+    fn learns<'t>(&self, targets: &'t Advantages) -> &'t [f32] {
+        match self {
+            Self::Linear(_) => &targets.discounted_return,
+            Self::Mlp(_) => &targets.lambda_return,
+        }
     }
 
     /// Learns from the batch: the linear one the discounted return, the perceptron the λ-return. After an error it is as it

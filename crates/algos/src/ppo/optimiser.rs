@@ -8,6 +8,7 @@ use rand::seq::SliceRandom;
 use super::{PpoConfig, metric_names};
 use crate::adam::{Adam, AdamConfig, clip_norm, group_rates};
 use crate::draws::Draws;
+use crate::gae::{Advantages, Foresight};
 use crate::learner::LearnError;
 use crate::metrics::Metrics;
 use crate::minibatch::{BLOCK, Minibatch, minibatches};
@@ -52,6 +53,8 @@ pub(super) struct Update {
     norms: f64,
     steps: u32,
     epochs: usize,
+    /// Of the values that its advantages began with.
+    foresight: Foresight,
 }
 
 /// Sums over the rows of one gradient step.
@@ -107,17 +110,17 @@ impl<P: Policy> Optimiser<P> {
     pub(super) fn update(
         &mut self,
         batch: &Batch,
-        (advantage, draws): (&[f32], &Draws),
+        (targets, draws): (&Advantages, &Draws),
         progress: f64,
         iteration: u64,
     ) -> Result<Metrics, LearnError> {
-        let mut update = self.begin(batch.rows(), progress, iteration);
-        while self.epoch(&mut update, batch, (advantage, draws))? {}
+        let mut update = self.begin(batch.rows(), targets.foresight, progress, iteration);
+        while self.epoch(&mut update, batch, (&targets.advantage, draws))? {}
         self.finish(&update)
     }
 
     /// An update from a batch of so many rows, before its first epoch.
-    pub(super) fn begin(&self, rows: usize, progress: f64, iteration: u64) -> Update {
+    pub(super) fn begin(&self, rows: usize, foresight: Foresight, progress: f64, iteration: u64) -> Update {
         let size = self.config.minibatch_rows;
         Update {
             progress,
@@ -132,6 +135,7 @@ impl<P: Policy> Optimiser<P> {
             norms: 0.0,
             steps: 0,
             epochs: 0,
+            foresight,
         }
     }
 
@@ -176,7 +180,7 @@ impl<P: Policy> Optimiser<P> {
 
     /// What an update has done, after its last epoch.
     pub(super) fn finish(&mut self, update: &Update) -> Result<Metrics, LearnError> {
-        let Update { kl, clip_fraction, of_draws, norms, steps, epochs, .. } = *update;
+        let Update { kl, clip_fraction, of_draws, norms, steps, epochs, foresight, .. } = *update;
         let grad_norm = norms / f64::from(steps).max(1.0);
         self.policy.log_std(&self.params, update.progress, &mut self.step.log_std);
         if !self.params.iter().all(|p| p.is_finite()) {
@@ -184,7 +188,9 @@ impl<P: Policy> Optimiser<P> {
         }
         let entropy = gaussian::entropy(&self.step.log_std);
         let names = metric_names(&*self.policy);
-        let mut values = vec![kl, entropy, clip_fraction, grad_norm, epochs as f64, of_draws.kl, of_draws.clipped];
+        let Foresight { value_loss, explained_variance } = foresight;
+        let mut values = vec![kl, entropy, clip_fraction, grad_norm, epochs as f64, value_loss, explained_variance];
+        values.extend([of_draws.kl, of_draws.clipped]);
         values.truncate(names.len());
         Ok(Metrics::new(names, values))
     }

@@ -79,6 +79,7 @@ fn draws(policy: &HardwarePolicy, batch: &Batch, worth: &[f64]) -> Draws {
         discounted_return: vec![],
         episode_return: vec![],
         episode_advantage: (0..batch.episodes.len()).map(|e| worth.get(e).copied().unwrap_or(0.0)).collect(),
+        foresight: Foresight::default(),
     };
     Draws::new(policy, batch, &targets, &AdvantageConfig { normalize: false, ..AdvantageConfig::default() })
 }

@@ -8,19 +8,20 @@ use hwasp_experiment::{Catalogue, load, resolve};
 use crate::failure::Failure;
 use crate::output;
 
-/// The least room for a description: below, a terminal breaks the lines itself.
+/// The least room for a description beside its name: below, it stands under it.
 const NARROWEST: usize = 24;
+/// How far it is indented there.
+const INDENT: usize = 4;
 
 pub(crate) fn run(catalogue: &Catalogue) -> Result<(), Failure> {
     let presets = catalogue.presets();
     let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
     // Scripts get a line for each.
     let terminal = std::io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
-    let room = terminal.map_or(usize::MAX, |(columns, _)| usize::from(columns.0).saturating_sub(width + 2));
+    let columns = terminal.map_or(usize::MAX, |(columns, _)| usize::from(columns.0));
     let mut text = String::new();
     let mut entry = |name: &str, about: &str| {
-        let lines = wrapped(about, room);
-        let _ = writeln!(text, "{name:width$}  {}", lines.join(&format!("\n{:width$}  ", "")));
+        let _ = writeln!(text, "{}", told(name, about, width, columns));
     };
     for preset in &presets {
         let experiment = resolve(load(preset.name, catalogue)?, None, catalogue)?;
@@ -33,11 +34,18 @@ pub(crate) fn run(catalogue: &Catalogue) -> Result<(), Failure> {
     Ok(output::print(&text)?)
 }
 
+/// A name, and what it is about: beside it where names have this `width` and there are `columns` enough, else under it.
+fn told(name: &str, about: &str, width: usize, columns: usize) -> String {
+    let room = columns.saturating_sub(width + 2);
+    if room < NARROWEST {
+        let lines = wrapped(about, columns.saturating_sub(INDENT));
+        return format!("{name}\n{:INDENT$}{}", "", lines.join(&format!("\n{:INDENT$}", "")));
+    }
+    format!("{name:width$}  {}", wrapped(about, room).join(&format!("\n{:width$}  ", "")))
+}
+
 /// The words of a text in lines of at most so many characters; a longer word has a line of its own.
 fn wrapped(text: &str, room: usize) -> Vec<String> {
-    if room < NARROWEST {
-        return vec![text.to_owned()];
-    }
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
         let line = lines.last_mut().expect("there is a first line");
@@ -63,6 +71,15 @@ mod tests {
         let text = "Ten parallel springs under 0.3 kg, with the paper's settings";
         assert_eq!(wrapped(text, 30), ["Ten parallel springs under 0.3", "kg, with the paper's settings"]);
         assert_eq!(wrapped(text, usize::MAX), [text]);
+        assert_eq!(
+            told("lamp", text, 6, 38),
+            "lamp    Ten parallel springs under 0.3\n        kg, with the paper's settings"
+        );
+        // In 28 columns there is no room beside a name of 6, and the terminal broke the words.
+        assert_eq!(
+            told("lamp", text, 6, 28),
+            "lamp\n    Ten parallel springs\n    under 0.3 kg, with the\n    paper's settings"
+        );
         assert_eq!(
             wrapped("a-word-that-is-longer-than-its-line and", 24),
             ["a-word-that-is-longer-than-its-line", "and"]

@@ -12,7 +12,8 @@ pub(crate) fn run(args: &PlotArgs, catalogue: &Catalogue) -> Result<(), Failure>
     let runs = args.runs.iter().map(|path| saved_run(path, &[], catalogue)).collect::<Result<Vec<_>, _>>()?;
     let x_axis = args.axis.axis();
     let all = runs.iter().map(|run| saved_curve(run, x_axis)).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
-    let mut options = PlotOptions { x_axis, ..plot_options(runs[0].assembly(), args.title.clone()) };
+    let mut options =
+        PlotOptions { x_axis, theme: args.theme.theme(), ..plot_options(runs[0].assembly(), args.title.clone()) };
     for run in &runs[1..] {
         let further = plot_options(run.assembly(), String::new()).panels;
         for panel in further {

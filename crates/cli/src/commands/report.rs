@@ -1,7 +1,9 @@
 //! `hwasp report`.
 
+use std::path::Path;
+
 use hwasp_experiment::Catalogue;
-use hwasp_report::report;
+use hwasp_report::report_in;
 
 use super::{run_folder, write_out};
 use crate::args::ReportArgs;
@@ -17,7 +19,8 @@ pub(crate) fn run(args: &ReportArgs, catalogue: &Catalogue) -> Result<(), Failur
         let text = "names no page: end it in .html";
         return Err(Failure::input(format!("`{}` {text}", out.display())));
     }
-    let html = report(folder, catalogue).map_err(Failure::input)?;
+    let beside = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let html = report_in(beside, folder, catalogue).map_err(Failure::input)?;
     write_out(&out, &html)?;
     Ok(output::print(&format!("{}\n", out.display()))?)
 }

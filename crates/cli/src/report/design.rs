@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use hwasp_runs::text::ReadableUnit;
-use hwasp_workshop::design::{ClosingPoint, DesignReport, DigitPair, GroupReport, HandReport, JointReport};
+use hwasp_workshop::design::{
+    ClosingPoint, DesignReport, DigitPair, GroupReport, HandJudgements, HandReport, JointReport,
+};
 use hwasp_workshop::parts::Verdict;
 
 /// Travel between the printed rows of free closing, mm.
@@ -16,10 +18,14 @@ pub(crate) fn design(report: &DesignReport, verdict: Option<&Verdict>) -> String
     for group in &report.groups {
         text.push_str(&if group.position.len() == 1 { one(group, widest) } else { many(group, widest) });
     }
+    if let Some(limits) = &report.judged {
+        let _ = writeln!(text, "  {limits}");
+    }
     if let Some(hand) = &report.hand {
-        text.push_str(&transmission(hand));
-        text.push_str(&pinches(hand));
-        text.push_str(&closing(hand));
+        let HandJudgements { open, pinch, closing: closes } = &hand.judged;
+        for (block, judged) in [(transmission(hand), open), (pinches(hand), pinch), (closing(hand), closes)] {
+            let _ = writeln!(text, "{block}  {judged}");
+        }
     }
     if let Some(verdict) = verdict {
         let _ = writeln!(text, "\n  {}", verdict.to_string().replace('\n', "\n  "));
@@ -166,15 +172,5 @@ fn closing(hand: &HandReport) -> String {
             newtons(*total_tension)
         );
     }
-    let end = 1e3 * hand.closing_end;
-    let _ = if hand.spends_its_tension {
-        writeln!(text, "  At {end:.1} mm the motor is at its limit of {:.0} N.", hand.tension_limit)
-    } else {
-        writeln!(
-            text,
-            "  At {end:.1} mm all is wound, and the motor is not yet at its limit of {:.0} N.",
-            hand.tension_limit
-        )
-    };
     text
 }

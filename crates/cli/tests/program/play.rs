@@ -66,7 +66,7 @@ fn a_robot_from_a_model_is_seen_and_judged() {
     assert!(sandbox.run("report run").status.success());
     let report = String::from_utf8(sandbox.read("run/report.html")).unwrap();
     for text in
-        ["1 joint, 1 actuator", "The best and the worst", "reward: effort", "robots/arm.xml", "undiscounted, of place"]
+        ["1 joint, 1 actuator", "The best and the worst", "reward: effort", "robots/arm.xml", "return, of place"]
     {
         assert!(report.contains(text), "{text}");
     }

@@ -7,7 +7,7 @@ use rand::RngExt;
 
 use super::compose::{Composition, PolicySpec};
 use super::spread::{CommandTape, Reparameterised};
-use super::{Normalizer, ParamGroup, ParamKind, Policy, Rows};
+use super::{NoiseSizes, Normalizer, ParamGroup, ParamKind, Policy, Rows};
 use crate::design::DesignSpace;
 use crate::environment::{CommandPort, EnvSpec};
 use crate::placement::{ActionDecoder, PlacementError};
@@ -214,6 +214,29 @@ impl HardwarePolicy {
         let layout = &self.composition.layout;
         let place = layout.commands.iter().position(|&c| c == command);
         place.map(|place| layout.len() - layout.commands.len() + place)
+    }
+
+    /// How strongly it explores with these parameters, at `progress` in [0, 1] of the training. Commands whose spread the controller
+    /// [tells](PolicySpec::state_dependent_std) have no size that holds everywhere.
+    pub fn noise_sizes(&self, params: &[f32], progress: f64) -> NoiseSizes {
+        let mut log_std = vec![0.0; self.action_dim()];
+        self.log_std(params, progress, &mut log_std);
+        let (layout, space) = (&self.composition.layout, self.space());
+        let (design, rest) = log_std.split_at(layout.sampled.len());
+        let (effort, command) = rest.split_at(layout.efforts);
+        let mean = |log_stds: &[f32], range: &dyn Fn(usize) -> f64| {
+            let shares = log_stds.iter().enumerate().map(|(i, &log_std)| f64::from(log_std).exp() / range(i));
+            shares.sum::<f64>() / log_stds.len() as f64
+        };
+        let port = |i: usize| &self.commands[layout.commands[i]];
+        NoiseSizes {
+            command: if self.spec.state_dependent_std { f64::NAN } else { mean(command, &|i| port(i).hi - port(i).lo) },
+            effort: mean(effort, &|_| 1.0),
+            design: mean(design, &|i| {
+                let (lo, hi) = space.bounds(layout.sampled[i]);
+                hi - lo
+            }),
+        }
     }
 
     /// What turns its actions into what an environment takes.

@@ -13,7 +13,7 @@ mod spread;
 pub use actor::Actor;
 pub use compose::PolicySpec;
 pub use hardware_policy::{HardwarePolicy, PolicyTape};
-pub use noise::{Anneal, Noise, Spread};
+pub use noise::{Anneal, Noise, NoiseSizes, Spread};
 pub use normalizer::Normalizer;
 pub use spread::Reparameterised;
 

@@ -1,5 +1,8 @@
 //! How strongly each action component is explored.
 
+use serde::{Deserialize, Serialize};
+
+use crate::bits;
 use crate::schedule::share_done;
 
 /// A change of the noise over training: geometric from 1 to `ratio` between two fractions of it.
@@ -46,4 +49,26 @@ pub struct Noise {
     pub design: Spread,
     /// Whether the log standard deviations are parameters that are trained (on top of a schedule).
     pub train: bool,
+}
+
+/// How strongly the parts of an action are explored at a moment of the training: standard deviations, the mean over the components
+/// of a kind; NaN where the action has none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NoiseSizes {
+    /// Of commands, as a fraction of the motor's range.
+    #[serde(with = "bits")]
+    pub command: f64,
+    /// Of efforts, SI.
+    #[serde(with = "bits")]
+    pub effort: f64,
+    /// Of design parameters that are sampled, as a fraction of their range.
+    #[serde(with = "bits")]
+    pub design: f64,
+}
+
+/// Of nothing.
+impl Default for NoiseSizes {
+    fn default() -> Self {
+        Self { command: f64::NAN, effort: f64::NAN, design: f64::NAN }
+    }
 }

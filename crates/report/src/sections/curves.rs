@@ -30,8 +30,9 @@ pub(crate) fn panels(plots: &PanelPlots, id: &str, against: &str) -> Markup {
     };
     let pictures: Vec<Markup> = plots.panels.iter().enumerate().map(described).collect();
     let explanation = if plots.explanation.is_empty() { String::new() } else { sentence(&plots.explanation) + "." };
-    // The return has a row to itself above many numbers of a design.
-    let (head, others) = if pictures.len() > 4 { pictures.split_at(1) } else { pictures.split_at(0) };
+    // The returns have a row to themselves above many numbers of a design.
+    let returns = plots.panels.iter().take_while(|panel| panel.label.ends_with("return")).count();
+    let (head, others) = pictures.split_at(if pictures.len() > 4 { returns } else { 0 });
     html! {
         @if !head.is_empty() { (gallery(head, "")) }
         (gallery(others, &explanation))

@@ -2,7 +2,7 @@
 
 use hwasp_plot::bars;
 use hwasp_runs::text::ReadableUnit;
-use hwasp_workshop::design::{GroupReport, HandReport};
+use hwasp_workshop::design::{Grade, GroupReport, HandReport, Judgement};
 use hwasp_workshop::parts::JointParts;
 use maud::{Markup, html};
 
@@ -25,9 +25,20 @@ pub(crate) fn section(run: &Run) -> Section {
             None if groups.is_empty() => p { "Nothing is designed: the experiment has no design parameters." },
             None => (table(groups)),
         }
+        @if let Some(judgement) = &run.design.judged { (judged(judgement)) }
         @for group in groups.iter().filter(|group| (2..=MOST_BARS).contains(&group.position.len())) { (each(group)) }
     };
     Section { id: "design", title: "The design", body }
+}
+
+/// What a block comes to: good, tight or bad, with the limit.
+pub(crate) fn judged(judgement: &Judgement) -> Markup {
+    let class = match judgement.grade {
+        Grade::Good => "success",
+        Grade::Tight => "doubt",
+        Grade::Bad => "failure",
+    };
+    html! { p.judged { span class=(class) { (sentence(judgement.grade.name())) } ": " (judgement.told) "." } }
 }
 
 /// Every group with its unit and its limits.

@@ -2,25 +2,36 @@
 
 use hwasp_core::split_quantity;
 use hwasp_experiment::{Experiment, Method};
+use hwasp_plot::views;
 use hwasp_runs::text::grouped;
 use hwasp_settings::written;
 use maud::{Markup, html};
 
+use crate::figure::{picture, wide};
 use crate::page::Section;
 use crate::run::Run;
+use crate::trials::Trials;
 
-pub(crate) fn section(run: &Run) -> Section {
+pub(crate) fn section(run: &Run, trials: Option<&Trials>) -> Section {
     let spec = &run.spec;
     let body = html! {
         p { (problem(spec)) }
         p { (method(spec)) }
         p { (controller(spec)) }
+        @if let Some(svg) = trials.and_then(|trials| views(trials.start.as_ref()?)) { (drawn(&svg)) }
         details {
             summary { "The task in numbers" }
             (task(run))
         }
     };
     Section { id: "optimised", title: "What was optimised", body }
+}
+
+/// The mechanism from three sides.
+fn drawn(svg: &str) -> Markup {
+    let about = "Outlines from the front, from the right and from above, with the measures of all that is no ground.";
+    let svg = picture(svg, "views", "The mechanism at the start of an episode, from three sides", about);
+    wide(&svg, "Three views; scroll to see all of it", "The start of the first held-out episode, to one scale.")
 }
 
 /// Body, purpose, and what of the body is open.

@@ -97,6 +97,7 @@ fn worth(list: &PartsList) -> Markup {
     let (title, about) = ("Success before and after rounding to parts", "The table below has the numbers.");
     let points = |figure: &MeanInterval| format!("{} points", change(100.0 * figure.mean, 1));
     html! {
+        div.part.whole {
         h3 { "What the parts are worth" }
         p {
             "On the same " (grouped(worth.trained.episodes)) " held-out episodes throughout."
@@ -141,6 +142,7 @@ fn worth(list: &PartsList) -> Markup {
                     }
                 }
             }
+        }
         }
     }
 }

@@ -6,15 +6,17 @@ use hwasp_runs::checkpoint::experiment_hash;
 use hwasp_runs::text::grouped;
 use maud::{Markup, html};
 
-use crate::page::Section;
+use crate::page::{KeyFigure, Section};
 use crate::run::Run;
 use crate::words::{date, decimal, duration, quoted};
 
 pub(crate) fn section(run: &Run) -> Section {
     let summary = &run.summary;
     let body = html! {
-        p { "The training again, to the same numbers on any number of threads:" }
-        (command(&format!("hwasp train {} --out again", quoted(&run.path.join(EXPERIMENT).to_string_lossy()))))
+        div.part {
+            p { "The training again, to the same numbers on any number of threads:" }
+            (command(&format!("hwasp train {} --out again", quoted(&run.path.join(EXPERIMENT).to_string_lossy()))))
+        }
         p {
             "Without the folder: save the text below as " code { (EXPERIMENT) }
             @if !run.spec.files().is_empty() {
@@ -33,6 +35,9 @@ pub(crate) fn section(run: &Run) -> Section {
                     tr { th scope="row" { "of these, to polish the controller" } td { (grouped(steps)) } }
                 }
                 tr { th scope="row" { "time" } td { (duration(summary.wall_s)) ", " (grouped(summary.steps_per_s as u64)) " steps/s" } }
+                @if let Some(figure) = summary.training_return {
+                    tr { th scope="row" { "return at its end" } td { (decimal(figure, 2)) } }
+                }
                 @if let Some(figure) = summary.training_discounted_return {
                     tr { th scope="row" { "discounted return at its end" } td { (decimal(figure, 2)) } }
                 }
@@ -54,6 +59,13 @@ pub(crate) fn section(run: &Run) -> Section {
     Section { id: "provenance", title: "Where it came from", body }
 }
 
+/// The day of the training, for those who have the page on paper.
+pub(crate) fn begun(label: &str, provenance: &Provenance) -> KeyFigure {
+    let when = date(provenance.started_unix_s);
+    let (day, time) = when.split_once(' ').unwrap_or((&when, ""));
+    KeyFigure { label: label.to_owned(), value: day.to_owned(), note: time.to_owned() }
+}
+
 /// A line to be typed.
 pub(crate) fn command(line: &str) -> Markup {
     html! { pre.command { code { (line) } } }
@@ -62,9 +74,11 @@ pub(crate) fn command(line: &str) -> Markup {
 /// What stands in the place of a file that a run folder has not yet.
 pub(crate) fn not_yet(what: &str, line: &str, then: &str) -> Markup {
     html! {
-        p { "This run has no " (what) " yet. What makes them:" }
-        (command(line))
-        p { "The report, made again, then shows " (then) "." }
+        div.part {
+            p { "This run has no " (what) " yet. What makes them:" }
+            (command(line))
+            p { "The report, made again, then shows " (then) "." }
+        }
     }
 }
 

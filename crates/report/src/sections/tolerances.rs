@@ -26,7 +26,7 @@ fn sensitivities(list: &Sensitivities) -> Markup {
         }
         p { strong { (list.verdict()) } }
         (wide(&chart, "The chart; scroll to see all of it", "The changes are paired: each episode with itself."))
-        table {
+        table.cards {
             caption { "Change of return, with 95 % intervals, and success with each parameter off to either side" }
             thead {
                 tr {
@@ -38,9 +38,9 @@ fn sensitivities(list: &Sensitivities) -> Markup {
                 @for parameter in &list.parameters {
                     tr {
                         th scope="row" { (parameter.name) }
-                        td { "±" (parameter.error_text) }
-                        td.n { (side(&parameter.minus, parameter)) }
-                        td.n { (side(&parameter.plus, parameter)) }
+                        td data-label="error" { "±" (parameter.error_text) }
+                        td.n data-label="too small" { div { (side(&parameter.minus, parameter)) } }
+                        td.n data-label="too large" { div { (side(&parameter.plus, parameter)) } }
                     }
                 }
             }

@@ -9,10 +9,12 @@ use hwasp_tasks::hand::{
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
+use super::judged::HandJudgements;
+
 /// Widths of the pinched objects, m: the range that the tasks draw from.
 const WIDTHS: [f64; 4] = [0.040, 0.060, 0.080, 0.100];
 /// The heaviest object of the tasks, kg.
-const HEAVIEST: f64 = 0.5;
+pub(super) const HEAVIEST: f64 = 0.5;
 /// Points of the picture.
 const POINTS: usize = 451;
 
@@ -98,6 +100,8 @@ pub struct HandReport {
     /// Free closing, a point per mm of travel and one at the end.
     #[serde(serialize_with = "write_points")]
     pub closing: Vec<ClosingPoint>,
+    /// What its blocks come to.
+    pub judged: HandJudgements,
     #[serde(skip)]
     chart: Vec<ClosingPoint>,
 }
@@ -109,14 +113,19 @@ impl HandReport {
         let end = closing_end(hand, design);
         let mut wound = hand.clone();
         wound.transmission.travel = end;
+        let joints: Vec<JointReport> = (0..KINDS.len()).map(|kind| joint(design, &droops, kind)).collect();
+        let pinches: Vec<PinchReport> =
+            WIDTHS.into_iter().map(|width| pinch(hand, design, width)).collect::<Result<_, _>>()?;
+        let spends_its_tension = end < hand.transmission.travel;
         Ok(Self {
             tension_limit: hand.transmission.tension_limit,
-            joints: (0..KINDS.len()).map(|kind| joint(design, &droops, kind)).collect(),
+            judged: HandJudgements::of(hand, (&joints, &pinches), (end, spends_its_tension)),
+            joints,
             stays_open: DigitPair { thumb: droops.thumb.holds(), finger: droops.finger.holds() },
             pulley_ratio: DigitPair { thumb: design[0] / design[1], finger: design[2] / design[3] },
-            pinches: WIDTHS.into_iter().map(|width| pinch(hand, design, width)).collect::<Result<_, _>>()?,
+            pinches,
             closing_end: end,
-            spends_its_tension: end < hand.transmission.travel,
+            spends_its_tension,
             closing: (0..(1e3 * end).ceil() as u32)
                 .map(|mm| 1e-3 * f64::from(mm))
                 .chain([end])

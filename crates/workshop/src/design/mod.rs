@@ -4,6 +4,7 @@
 //! engine can read a hand, too.
 
 mod hand;
+mod judged;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,6 +18,7 @@ use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
 use serde::Serialize;
 
 pub use self::hand::{DigitPair, HandReport, JointReport, PinchReport};
+pub use self::judged::{Grade, HandJudgements, Judgement};
 use crate::error::WorkshopError;
 
 /// A group of design parameters and where they lie.
@@ -44,6 +46,9 @@ pub struct DesignReport {
     pub seed: u64,
     /// The groups, in the order of the design.
     pub groups: Vec<GroupReport>,
+    /// How far they are from their limits; none where nothing is designed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Judgement>,
     /// What statics say of it, where it is a hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand: Option<HandReport>,
@@ -89,6 +94,7 @@ impl DesignReport {
             method: spec.method.name().to_owned(),
             task: spec.task.name().to_owned(),
             seed: spec.seed,
+            judged: judged::limits(&groups),
             groups,
             hand,
         })

@@ -63,31 +63,37 @@ pub struct Side {
 const NAMED: usize = 3;
 
 impl Sensitivities {
-    /// What follows, in a sentence: what has to be made precisely; or, where no error lowers the return, which way it rises. Only
-    /// changes count whose interval leaves out 0; where there are none, the sentence says why nothing follows.
+    /// What follows, in sentences: what has to be made precisely; and where some error raises the return, that the design is no local
+    /// optimum, and by how much it could be better. Only changes count whose interval leaves out 0; where there are none, it says why
+    /// nothing follows.
     pub fn verdict(&self) -> String {
         let mut costly: Vec<(f64, &str)> = (self.parameters.iter())
             .filter_map(|p| Some((p.sides().filter(|side| side.lowers()).map(Side::mean).reduce(f64::min)?, &*p.name)))
             .collect();
         costly.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if !costly.is_empty() {
-            let names: Vec<&str> = costly.iter().take(NAMED).map(|(_, name)| *name).collect();
-            return format!("To be made precisely first: {}.", names.join(", "));
-        }
-        let mut gains: Vec<(f64, &str, &str)> = (self.parameters.iter())
+        let mut gains: Vec<(&Side, &str, &str)> = (self.parameters.iter())
             .flat_map(|p| ["smaller", "larger"].into_iter().zip(p.sides()).map(|(way, side)| (side, way, &*p.name)))
             .filter(|(side, ..)| side.raises())
-            .map(|(side, way, name)| (side.mean(), way, name))
             .collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
-        if gains.is_empty() {
+        gains.sort_by(|a, b| b.0.mean().total_cmp(&a.0.mean()));
+        if costly.is_empty() && gains.is_empty() {
             return self.undecided();
         }
-        let gains = gains.iter().take(NAMED).map(|(gain, way, name)| format!("{name} {way} (+{gain:.1})"));
-        format!(
-            "No error is sure to lower the return, and some raise it: the design is no local optimum. What raises it most: {}.",
-            gains.collect::<Vec<_>>().join(", ")
-        )
+        let mut told = Vec::new();
+        if !costly.is_empty() {
+            let names: Vec<&str> = costly.iter().take(NAMED).map(|(_, name)| *name).collect();
+            told.push(format!("To be made precisely first: {}.", names.join(", ")));
+        }
+        if !gains.is_empty() {
+            let every = self.parameters.iter().flat_map(Sensitivity::sides).all(|side| side.mean() > 0.0);
+            let some = if every { "Every error raised the return" } else { "Some errors raised the return" };
+            let gain = |(side, way, name): &(&Side, &str, &str)| {
+                format!("{name} {way} by {:.1}", side.change.undiscounted_return)
+            };
+            let most: Vec<String> = gains.iter().take(NAMED).map(gain).collect();
+            told.push(format!("{some}: the design is no local optimum. What raised it most: {}.", most.join(", ")));
+        }
+        told.join(" ")
     }
 
     /// Why nothing follows.
@@ -231,11 +237,17 @@ mod tests {
             let names = ["a", "b", "c", "d"];
             verdict(of.iter().zip(names).map(|(&changes, name)| varied(name, changes, 0.2, 4)).collect())
         };
-        assert_eq!(told(&[[-1.0, 2.0], [0.5, -3.0]]), "To be made precisely first: b, a.");
+        assert_eq!(told(&[[-1.0, 0.1], [0.1, -3.0]]), "To be made precisely first: b, a.");
         assert_eq!(
-            told(&[[1.0, 2.0], [0.5, 0.0], [4.0, 0.0]]),
-            "No error is sure to lower the return, and some raise it: the design is no local optimum. What raises it most: c \
-             smaller (+4.0), a larger (+2.0), a smaller (+1.0)."
+            told(&[[1.0, 2.0], [0.5, 0.1], [4.0, 0.1]]),
+            "Every error raised the return: the design is no local optimum. What raised it most: c smaller by 4.0 [3.8, 4.2], a \
+             larger by 2.0 [1.8, 2.2], a smaller by 1.0 [0.8, 1.2]."
+        );
+        // What has to be precise in one way may be better the other way.
+        assert_eq!(
+            told(&[[-1.0, 2.0], [0.1, 0.0]]),
+            "To be made precisely first: a. Some errors raised the return: the design is no local optimum. What raised it most: a \
+             larger by 2.0 [1.8, 2.2]."
         );
     }
 
@@ -266,7 +278,11 @@ mod tests {
             varied("c", [5.0, 5.0], 1.0, 8),
             half,
         ];
-        assert_eq!(verdict(mixed), "To be made precisely first: b, d.");
+        assert_eq!(
+            verdict(mixed),
+            "To be made precisely first: b, d. Some errors raised the return: the design is no local optimum. What raised it most: c \
+             smaller by 5.0 [4.0, 6.0], c larger by 5.0 [4.0, 6.0]."
+        );
         // All episodes alike.
         let mut alike = varied("a", [-1.0, 0.0], 0.2, 8);
         for side in [&mut alike.minus, &mut alike.plus] {

@@ -136,7 +136,7 @@ fn surface(solid: &Solid) -> Vec<Point> {
         Form::Box(half) => (0..8)
             .map(|corner| std::array::from_fn(|k| if corner >> k & 1 == 0 { -half[k] } else { half[k] }))
             .collect(),
-        Form::Hull(points) => points.to_vec(),
+        Form::Mesh(mesh) => mesh.corners().to_vec(),
     };
     let placed =
         |at: Point| std::array::from_fn(|i| solid.at[i] + (0..3).map(|k| at[k] * solid.axes[k][i]).sum::<f64>());

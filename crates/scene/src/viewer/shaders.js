@@ -4,7 +4,7 @@ const SHADOW = 1024; // pixels of a side of the map of shadows
 
 const VERTEX = `#version 300 es
   layout(location = 0) in vec4 at; // on the shape of size 1; w: which end of a capsule it belongs to
-  layout(location = 1) in vec3 out_;
+  layout(location = 1) in vec3 outward;
   uniform mat4 view, sun, pose;
   uniform vec3 size, shift;
   uniform float stretch;
@@ -13,7 +13,7 @@ const VERTEX = `#version 300 es
     own = at.xyz * size + vec3(0, 0, stretch * at.w) + shift;
     vec4 world = pose * vec4(own, 1);
     place = world.xyz;
-    normal = mat3(pose) * (out_ / size);
+    normal = mat3(pose) * (outward / size);
     lit = (sun * world).xyz * 0.5 + 0.5;
     lit.z -= 0.002; // so that nothing shades itself
     gl_Position = view * world;

@@ -11,7 +11,7 @@ const lathe = (profile, sides) => {
   });
   return [points, faces];
 };
-const round_ = (sides) => {
+const rounded = (sides) => {
   const half = sides >> 2, profile = [];
   for (const end of [-1, 1]) {
     for (let i = 0; i <= half; i++) {

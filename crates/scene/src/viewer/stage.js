@@ -35,9 +35,9 @@ const stage = (gl, scene) => {
     }
     return { array, buffers, count: faces.length };
   };
-  const ball = shape(round_(28));
+  const ball = shape(rounded(28));
   const shapes = {
-    ellipsoid: ball, capsule: ball, cord: shape(round_(8)), cylinder: shape(cylinder()), plane: shape(box([[2, 1]])),
+    ellipsoid: ball, capsule: ball, cord: shape(rounded(8)), cylinder: shape(cylinder()), plane: shape(box([[2, 1]])),
     box: shape(box([[0, -1], [0, 1], [1, -1], [1, 1], [2, -1], [2, 1]])),
   };
   const map = gl.createTexture();

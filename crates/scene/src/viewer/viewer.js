@@ -34,13 +34,13 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
   const play = button("Play", "hw-play"), follow = button("Follow"), reset = button("Reset view");
   const slider = make("input", { type: "range", min: 0, step: 0.01, "aria-label": "Time" });
   const clock = make("span", { class: "hw-clock" }), about = make("p", { class: "hw-about" });
-  const stage_ = make("div", { class: "hw-stage" }, canvas);
+  const frame = make("div", { class: "hw-stage" }, canvas);
   const row = make("div", { class: "hw-row" }, play, make("label", {}, slider), clock, follow, reset);
-  const root = make("div", { class: "hw" }, ...(controls ? [choices, stage_, row] : [stage_]), about);
+  const root = make("div", { class: "hw" }, ...(controls ? [choices, frame, row] : [frame]), about);
   element.append(root);
   const gl = canvas.getContext("webgl2", { antialias: true });
   if (!gl) {
-    stage_.replaceChildren(make("p", { role: "status" },
+    frame.replaceChildren(make("p", { role: "status" },
       "This browser cannot draw in three dimensions: WebGL 2 is missing or turned off. A current Firefox, Chrome, Edge or Safari has it."));
   }
 
@@ -200,12 +200,12 @@ globalThis.hwaspViewer = (element, first, { take: begin, autoplay = true, contro
     changed();
   });
   const sized = new ResizeObserver(changed);
-  sized.observe(stage_);
+  sized.observe(frame);
   const watched = new IntersectionObserver((entries) => {
     seen = entries.at(-1).isIntersecting;
     changed();
   });
-  watched.observe(stage_);
+  watched.observe(frame);
   // Nothing moves by itself for those who want less motion.
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   calm.addEventListener("change", viewer.stop);

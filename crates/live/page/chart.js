@@ -2,6 +2,7 @@
 import { el, number, short, svg, withUnit } from "./words.js";
 
 const HEIGHT = 300;
+const NEAR = 24; // pixels between the pointer and a value that is told
 const MARGIN = { left: 62, right: 12, top: 10, bottom: 30 };
 
 // Round numbers from low to high, about so many.
@@ -101,8 +102,9 @@ export class Chart {
   }
 
   key(event) {
-    const xs = this.lines?.find((line) => line.xs.length)?.xs;
-    if (!xs) return;
+    // Along the longest of them.
+    const xs = (this.lines ?? []).map((line) => line.xs).sort((a, b) => (b.at(-1) ?? 0) - (a.at(-1) ?? 0))[0];
+    if (!xs?.length) return;
     const now = this.cursor === null ? xs.length - 1 : nearest(xs, this.cursor);
     const to = { ArrowLeft: now - 1, ArrowDown: now - 1, ArrowRight: now + 1, ArrowUp: now + 1, Home: 0, End: xs.length - 1, PageUp: now - 20, PageDown: now + 20 }[event.key];
     if (event.key === "Escape") this.move(null);
@@ -118,7 +120,9 @@ export class Chart {
     this.hair.replaceChildren();
     const found = cursor === null ? [] : this.lines.flatMap((line) => {
       const i = line.xs.length ? nearest(line.xs, cursor) : -1;
-      return i >= 0 && line.ys[i] !== null ? [{ line, x: line.xs[i], y: line.ys[i] }] : [];
+      // A run that had ended by then has no value there.
+      const near = i >= 0 && Math.abs(this.x(line.xs[i]) - this.x(cursor)) < NEAR;
+      return near && line.ys[i] !== null ? [{ line, x: line.xs[i], y: line.ys[i] }] : [];
     });
     this.values.hidden = found.length === 0;
     if (found.length === 0) return;

@@ -225,7 +225,7 @@ export function cost(element, { before, after, change }) {
   const rows = [
     ["as trained", number(before.return.mean), ...(all ? [share(success(before).successes / success(before).episodes)] : [])],
     ["changed", number(after.return.mean), ...(all ? [share(success(after).successes / success(after).episodes)] : [])],
-    ["difference", interval(change.return), ...(all && change.success ? [`${number(100 * change.success.mean)} points`] : [])],
+    ["difference", interval(change.return), ...(all && change.success ? [`${(100 * change.success.mean).toFixed(1).replace("-", "−")} points`] : [])],
   ];
   element.replaceChildren(el("table", {},
     el("caption", {}, `On the same ${change.episodes} held-out episodes, by the same controller; in brackets a 95 % interval.`),

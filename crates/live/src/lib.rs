@@ -2,7 +2,7 @@
 //! newest controller in three dimensions, and what another design would do.
 //!
 //! A [`Server`] reads run folders as they lie on the disk, whoever writes them, and writes nothing. It answers GET on
-//! [a fixed list of paths](api), and names runs by their places in the list that it was given.
+//! a fixed list of paths, and names runs by their places in the list that it was given.
 
 #![forbid(unsafe_code)]
 

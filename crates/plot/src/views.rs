@@ -3,10 +3,12 @@
 use hwasp_core::{Form, Sight, Solid};
 
 use crate::panel::{GREY, INK};
-use crate::svg::{Anchor, Svg};
+use crate::svg::{Anchor, Svg, text_width};
 
 type Point = [f64; 3];
 type Flat = (f64, f64);
+/// The colour of a cord, and its way.
+type Line = ([u8; 3], Vec<Flat>);
 
 /// Room for all views together, px, and between them.
 const ROOM: (f64, f64) = (860.0, 300.0);
@@ -19,11 +21,8 @@ const BELOW: f64 = 34.0;
 const ROUND: usize = 24;
 
 /// From where it is seen: what it is called, the axes to the right and up, and towards the eye.
-const SIDES: [(&str, usize, usize, (usize, f64)); 3] = [
-    ("from the front (x to the right, z up)", 0, 2, (1, -1.0)),
-    ("from the right (y to the right, z up)", 1, 2, (0, 1.0)),
-    ("from above (x to the right, y up)", 0, 1, (2, 1.0)),
-];
+const SIDES: [(&str, usize, usize, (usize, f64)); 3] =
+    [("from the front", 0, 2, (1, -1.0)), ("from the right", 1, 2, (0, 1.0)), ("from above", 0, 1, (2, 1.0))];
 
 /// An outline in a view, m, and how near it is.
 struct Shape {
@@ -36,12 +35,12 @@ struct Shape {
 /// Draws the solids and cords of a sight, without the ground; none where there is nothing else.
 pub fn views(sight: &Sight) -> Option<String> {
     let views = SIDES.map(|(_, right, up, towards)| shapes(sight, right, up, towards));
-    let cords = |right: usize, up: usize| -> Vec<([u8; 3], Vec<Flat>)> {
+    let cords = |right: usize, up: usize| -> Vec<Line> {
         let flat = |part: &Vec<Point>| part.iter().map(|at| (at[right], at[up])).collect();
         sight.cords.iter().flat_map(|cord| cord.parts.iter().map(|part| (cord.colour, flat(part)))).collect()
     };
     let cords = SIDES.map(|(_, right, up, _)| cords(right, up));
-    let points = |(shapes, cords): (&Vec<Shape>, &Vec<([u8; 3], Vec<Flat>)>)| {
+    let points = |(shapes, cords): (&Vec<Shape>, &Vec<Line>)| {
         bounds(shapes.iter().map(|shape| &shape.outline).chain(cords.iter().map(|(_, line)| line)).flatten())
     };
     let boxes: Vec<[f64; 4]> = views.iter().zip(&cords).map(points).collect();
@@ -51,17 +50,22 @@ pub fn views(sight: &Sight) -> Option<String> {
     let wide: f64 = boxes.iter().map(|[left, _, right, _]| right - left).sum();
     let high = boxes.iter().map(|[_, low, _, high]| high - low).fold(0.0, f64::max);
     let scale = (ROOM.0 / wide).min(ROOM.1 / high);
-    let (width, height) = (scale * wide + GAP * SIDES.len() as f64, ABOVE + scale * high + BELOW);
+    // A view has as much room as its name takes, at least.
+    let rooms: Vec<f64> = (SIDES.iter().zip(&boxes))
+        .map(|((name, ..), [left, _, right, _])| (scale * (right - left)).max(text_width(name, TEXT)))
+        .collect();
+    let (width, height) = (rooms.iter().sum::<f64>() + GAP * rooms.len() as f64, ABOVE + scale * high + BELOW);
     let mut svg = Svg::new(width, height, "the mechanism from three sides");
     let mut x = GAP / 2.0;
-    for (((name, ..), shapes), (cords, area)) in SIDES.iter().zip(&views).zip(cords.iter().zip(&boxes)) {
+    for (((name, ..), shapes), ((cords, area), room)) in
+        SIDES.iter().zip(&views).zip(cords.iter().zip(&boxes).zip(&rooms))
+    {
         let [left, low, right, top] = *area;
         let at = |(h, v): Flat| (x + scale * (h - left), ABOVE + scale * (high - (v - low)));
-        svg.text((x, 16.0), TEXT, Anchor::Start, INK, name.split_once(" (").map_or(*name, |(name, _)| name));
+        svg.text((x, 16.0), TEXT, Anchor::Start, INK, name);
         for Shape { outline, colour: [r, g, b], opacity, .. } in shapes {
             let style = format!(
-                "fill=\"#{r:02x}{g:02x}{b:02x}\" fill-opacity=\"{:.2}\" stroke=\"#666666\" stroke-width=\"0.9\"",
-                opacity
+                "fill=\"#{r:02x}{g:02x}{b:02x}\" fill-opacity=\"{opacity:.2}\" stroke=\"#666666\" stroke-width=\"0.9\""
             );
             svg.polygon(outline.iter().map(|&point| at(point)), &style);
         }
@@ -75,7 +79,7 @@ pub fn views(sight: &Sight) -> Option<String> {
         let (foot, head, side) = (at((left, low)).1, at((left, top)).1, end.0 + 10.0);
         measure(&mut svg, (side, foot), (side, head));
         svg.upward_text((side + 14.0, f64::midpoint(foot, head)), TEXT, GREY, &length(top - low));
-        x += scale * (right - left) + GAP;
+        x += room + GAP;
     }
     Some(svg.finish())
 }

@@ -99,7 +99,7 @@ impl Run {
         let learner = table.learner.iter().map(|name| format!("{LEARNER}{name}"));
         let terms = table.terms.iter().map(|name| format!("{TERM}{name}"));
         for (i, name) in fixed.chain(learner).chain(terms).chain(table.design_totals.iter().cloned()).enumerate() {
-            let values = rows.iter().map(|row| values(row).nth(i).unwrap_or(f64::NAN));
+            let values = rows.iter().map(|row| row.values().nth(i).unwrap_or(f64::NAN));
             columns.set_item(name, PyArray1::from_iter(py, values))?;
         }
         Ok(columns)

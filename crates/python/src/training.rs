@@ -52,7 +52,7 @@ impl Observer for Teller {
             }
             Event::Iteration(row) => {
                 let mut values = vec![row.iteration as f64, row.env_steps as f64];
-                values.extend(hwasp_runs::metrics::values(row));
+                values.extend(row.values());
                 let (answer, answered) = sync_channel(1);
                 if let Some(there) = &self.news
                     && there.send(News::Row(values, answer)).is_ok()

@@ -44,7 +44,7 @@ impl Played {
 const MOST_STEPS: u64 = 40_000;
 const EPISODES: (u64, u64) = (20, 100);
 /// Episodes that a film shows: the first successes, each of another kind, and the first failures.
-const SHOWN: (usize, usize) = (4, 2);
+const SHOWN: (usize, usize) = (3, 2);
 
 /// What an episode came to, or how its physics failed.
 type EpisodeAnswer = Result<EpisodeResult, RolloutError>;

@@ -117,7 +117,7 @@ impl<W: Write> MetricsWriter<W> {
             return Err(MetricsError::Fields { line: 0, found, expected });
         }
         let mut text = format!("{},{}", row.iteration, row.env_steps);
-        for value in values(row) {
+        for value in row.values() {
             // `Debug` is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let _ = write!(text, ",{value:?}");
         }
@@ -143,14 +143,6 @@ impl<W: Write> MetricsWriter<W> {
         self.out.write_all(format!("{text}\n").as_bytes())?;
         Ok(self.out.flush()?)
     }
-}
-
-/// The values of a row behind `iteration` and `env_steps`, in the order of the columns.
-pub fn values(row: &MetricsRow) -> impl Iterator<Item = f64> {
-    let NoiseSizes { command, effort, design } = row.noise;
-    let fixed = [row.wall_s, row.discounted_return, row.undiscounted_return, row.episodes, row.episode_steps];
-    let own = row.learner.iter().chain(&row.terms).chain(&row.design_totals).copied();
-    fixed.into_iter().chain([command, effort, design]).chain(own)
 }
 
 /// A table read back.

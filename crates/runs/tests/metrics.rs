@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use hwasp_core::NoiseSizes;
-use hwasp_runs::metrics::{Columns, FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter, values};
+use hwasp_runs::metrics::{Columns, FIXED_COLUMNS, LONGEST_LINE, MetricsError, MetricsTable, MetricsWriter};
 use hwasp_training::MetricsRow;
 
 fn row(iteration: u64, values: [f64; 9]) -> MetricsRow {
@@ -63,7 +63,7 @@ fn message(body: &str) -> String {
 }
 
 fn bits(row: &MetricsRow) -> Vec<u64> {
-    values(row).map(f64::to_bits).collect()
+    row.values().map(f64::to_bits).collect()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use hwasp_core::{NoiseSizes, bits};
 use serde::{Deserialize, Serialize};
 
 /// One iteration; what is not known is NaN.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MetricsRow {
     /// Updates before this row, from 0.
     pub iteration: u64,
@@ -38,6 +38,24 @@ pub struct MetricsRow {
     /// One per design total of the table, in its order, SI.
     #[serde(with = "bits")]
     pub design_totals: Vec<f64>,
+}
+
+impl MetricsRow {
+    /// All but `iteration` and `env_steps`, in the order of the columns of `metrics.csv`.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        let NoiseSizes { command, effort, design } = self.noise;
+        let fixed = [self.wall_s, self.discounted_return, self.undiscounted_return, self.episodes, self.episode_steps];
+        let own = self.learner.iter().chain(&self.terms).chain(&self.design_totals).copied();
+        fixed.into_iter().chain([command, effort, design]).chain(own)
+    }
+}
+
+/// To the bit: what both do not know is alike.
+impl PartialEq for MetricsRow {
+    fn eq(&self, other: &Self) -> bool {
+        let counts = |row: &Self| (row.iteration, row.env_steps, row.learner.len(), row.terms.len());
+        counts(self) == counts(other) && self.values().map(f64::to_bits).eq(other.values().map(f64::to_bits))
+    }
 }
 
 /// Nothing is known.

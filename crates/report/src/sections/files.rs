@@ -46,9 +46,10 @@ fn files(run: &Path, folder: &str) -> Vec<(String, u64)> {
     let read = std::fs::read_dir(run.join(folder));
     let named = |entry: std::fs::DirEntry| {
         let (name, about) = (entry.file_name().into_string().ok()?, entry.metadata().ok()?);
-        let own = name.starts_with('.') || (folder.is_empty() && name.ends_with(".html")) || name.ends_with(".lock");
+        let page = Path::new(&name).extension().is_some_and(|extension| extension == "html");
+        let own = name.starts_with('.') || (folder.is_empty() && page);
         let path = if folder.is_empty() { name } else { format!("{folder}/{name}") };
-        (about.is_file() && !own).then(|| (path, about.len()))
+        (about.is_file() && !own).then_some((path, about.len()))
     };
     let mut files: Vec<(String, u64)> = read.into_iter().flatten().flatten().filter_map(named).collect();
     files.sort();

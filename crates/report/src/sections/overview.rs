@@ -129,7 +129,7 @@ fn task(run: &Run) -> Markup {
         _ => true,
     };
     html! {
-        table {
+        table.keys {
             caption { "The keys of " code { "[task]" } " in the experiment" }
             thead { tr { th scope="col" { "key" } th scope="col" { "value" } } }
             tbody {

@@ -64,7 +64,8 @@ export class Tiles {
   }
 
   show(detail, chosen) {
-    const columns = detail.curve.columns.filter((column) => column.kind === this.kind);
+    // What a training does not have, noise of efforts for one, is not known in any row.
+    const columns = detail.curve.columns.filter((column) => column.kind === this.kind && column.last !== null);
     this.section.hidden = columns.length === 0;
     const names = columns.map((column) => column.name).join();
     if (names !== this.built) {

@@ -51,11 +51,20 @@ impl Point {
     }
 }
 
-/// The values of a row: returns, metrics of the learner, terms of the reward, totals of the design.
+/// The values of a row: returns, metrics of the learner, terms of the reward, totals of the design, and what [`LAST`] names.
 pub(crate) fn columns(row: &MetricsRow) -> impl Iterator<Item = f64> {
     let rest = row.learner.iter().chain(&row.terms).chain(&row.design_totals);
-    [row.undiscounted_return, row.discounted_return].into_iter().chain(rest.copied())
+    let last = [row.episode_steps, row.noise.command, row.noise.effort, row.noise.design];
+    [row.undiscounted_return, row.discounted_return].into_iter().chain(rest.copied()).chain(last)
 }
+
+/// The last columns, with their meanings.
+pub(crate) const LAST: [(&str, &str); 4] = [
+    ("episode_steps", "the mean length of the training episodes of an iteration, steps"),
+    ("noise.command", "the standard deviation of commands, as a share of their range"),
+    ("noise.effort", "the standard deviation of efforts, SI"),
+    ("noise.design", "the standard deviation of designs that are drawn, as a share of their range"),
+];
 
 /// What is known of a table so far.
 #[derive(Debug, Default)]
@@ -167,6 +176,8 @@ impl Curve {
 
 #[cfg(test)]
 mod tests {
+    use hwasp_core::NoiseSizes;
+
     use super::*;
 
     fn row(iteration: u64, value: f64) -> MetricsRow {
@@ -176,6 +187,9 @@ mod tests {
             wall_s: iteration as f64,
             discounted_return: value,
             undiscounted_return: 2.0 * value,
+            episodes: 4.0,
+            episode_steps: 50.0,
+            noise: NoiseSizes { command: 0.5, ..NoiseSizes::default() },
             learner: vec![f64::NAN],
             terms: Vec::new(),
             design_totals: vec![1.0],
@@ -193,6 +207,7 @@ mod tests {
         assert_eq!((last.env_steps, last.wall_s), (11_000, 1099.0));
         assert_eq!((last.mean(0), last.mean(1), last.mean(3)), (2195.0, 1097.5, 1.0));
         assert!(last.mean(2).is_nan());
+        assert_eq!((last.mean(4), last.mean(5)), (50.0, 0.5));
         // Twenty rows, ten steps a second.
         assert_eq!(curve.steps_per_s(), Some(10.0));
     }

@@ -338,7 +338,8 @@ impl Follower {
             (name.as_str(), "design", group.map_or("", |group| &group.meaning), unit)
         });
         let last: Vec<f64> = curve.last.iter().flat_map(crate::curve::columns).collect();
-        let all = fixed.into_iter().chain(learner).chain(terms).chain(totals);
+        let others = crate::curve::LAST.map(|(name, meaning)| (name, "learner", meaning, ("", 1.0)));
+        let all = fixed.into_iter().chain(learner).chain(terms).chain(totals).chain(others);
         let column = |(i, (name, kind, meaning, (unit, to_si)))| {
             let value = |value: f64| value.is_finite().then_some(value);
             let values = curve.points[from..].iter().map(|point| value(point.mean(i)).map(|mean| mean as f32));

@@ -50,11 +50,13 @@ impl MetricsRow {
     }
 }
 
-/// To the bit: what both do not know is alike.
+/// To the bit; what both do not know is alike.
 impl PartialEq for MetricsRow {
     fn eq(&self, other: &Self) -> bool {
         let counts = |row: &Self| (row.iteration, row.env_steps, row.learner.len(), row.terms.len());
-        counts(self) == counts(other) && self.values().map(f64::to_bits).eq(other.values().map(f64::to_bits))
+        // Of what is not known there is but one kind.
+        let bits = |value: f64| if value.is_nan() { f64::NAN } else { value }.to_bits();
+        counts(self) == counts(other) && self.values().map(bits).eq(other.values().map(bits))
     }
 }
 

@@ -389,7 +389,7 @@ impl AxisArg {
 pub(crate) enum ThemeArg {
     /// A screen: panels of one size side by side
     Screen,
-    /// A page: 170 mm wide, with texts of 8 points and more, and dashes for printers without colour
+    /// A page: 170 mm wide, with texts of 7.5 points and more, and dashes for printers without colour
     Print,
 }
 

@@ -33,7 +33,7 @@ pub enum Theme {
     /// Panels of one size, as many side by side as a wide screen holds.
     #[default]
     Screen,
-    /// As wide as the text of a page (170 mm), whatever is on it: texts have 8 points and more, lines one, and each colour has
+    /// As wide as the text of a page (170 mm), whatever is on it: texts have 7.5 points and more, lines one, and each colour has
     /// dashes of its own for printers without colour.
     Print,
 }

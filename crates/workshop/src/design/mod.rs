@@ -83,8 +83,8 @@ impl DesignReport {
         }
         let hand = match hand_of(spec) {
             Some(hand) => {
-                // Twelve groups of one; the law builds what it trains.
-                let design: [f64; DESIGN_LEN] = std::array::from_fn(|i| groups[i].group.values[0]);
+                // Twelve groups of one.
+                let design: [f64; DESIGN_LEN] = std::array::from_fn(|i| groups[i].group.as_built[0]);
                 Some(HandReport::new(hand, &design).map_err(|e| e.to_string())?)
             }
             None => None,

@@ -150,7 +150,9 @@ fn checkout(path: &Path) -> Result<Checkout, ProjectError> {
 /// The checkout that this program was built in: the one in whose target folder it lies.
 fn own_checkout() -> Result<Checkout, ProjectError> {
     let program = std::env::current_exe().unwrap_or_default();
-    let checkout = program.ancestors().find(|folder| is_checkout(folder));
+    // `cargo run` says it; its target folder may lie elsewhere.
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
+    let checkout = program.ancestors().chain(package.ancestors()).find(|folder| is_checkout(folder));
     checkout.map(|folder| Checkout(folder.to_owned())).ok_or(ProjectError::NoSources)
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn page(run: &Run) -> Result<Page, RunError> {
     if let Some(hand) = &run.design.hand {
         sections.extend([hand::section(run, hand, played.as_ref().ok()), parts::section(run)]);
     }
-    sections.push(tolerances::section(run));
+    sections.extend((!run.design.groups.is_empty()).then(|| tolerances::section(run)));
     // A world may have no law: its design is in the model.
     sections.extend((!run.spec.task.built().training.env.effort.is_empty()).then(|| law::section(run)));
     sections.extend([provenance::section(run), files::section(run)]);

@@ -23,7 +23,7 @@ pub(crate) struct WatchArgs {
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", value_parser = place)]
     bind: Place,
     /// A name of this machine by which others open the page; may be repeated
-    #[arg(long = "host", value_name = "NAME")]
+    #[arg(long = "host", value_name = "NAME", value_parser = host)]
     pub(crate) hosts: Vec<String>,
 }
 
@@ -45,9 +45,19 @@ pub(super) fn place(text: &str) -> Result<Place, String> {
     if let Ok(port) = text.parse() {
         return Ok(Place { ip: Ipv4Addr::LOCALHOST.into(), port: Some(port) });
     }
-    let ip = if text == "localhost" { Ok(Ipv4Addr::LOCALHOST.into()) } else { text.parse() };
+    let bare = text.strip_prefix('[').and_then(|text| text.strip_suffix(']')).unwrap_or(text);
+    let ip = if text == "localhost" { Ok(Ipv4Addr::LOCALHOST.into()) } else { bare.parse() };
     ip.map(|ip| Place { ip, port: None })
-        .map_err(|_| "it has to be an address such as 127.0.0.1, 0.0.0.0:9000 or [::1]:9000".to_owned())
+        .map_err(|_| "it has to be an address such as 127.0.0.1, 0.0.0.0:9000 or [::1]:9000, or a port".to_owned())
+}
+
+/// The name of a machine, as browsers ask for it.
+fn host(text: &str) -> Result<String, String> {
+    let fits = |c: char| c.is_alphanumeric() || "-._".contains(c);
+    if !text.is_empty() && text.chars().all(fits) {
+        return Ok(text.to_owned());
+    }
+    Err("it has to be a name alone, such as box.lan: no address of a page, no port".to_owned())
 }
 
 impl Place {

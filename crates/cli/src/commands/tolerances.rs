@@ -14,6 +14,11 @@ use crate::{output, report};
 pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &[], catalogue)?;
     let (assembly, params) = (saved.assembly(), saved.params().map_err(Failure::input)?);
+    if assembly.policy.space().names().is_empty() {
+        let error =
+            Failure::input(format!("nothing of {} is designed: no parameter can be off", assembly.experiment().name));
+        return Err(error.hint("[task.design] of an experiment says what is designed"));
+    }
     let errors = errors_of(assembly, &params, &args.error).map_err(Failure::input)?;
     let asked = args.held_out.asked(&assembly.experiment().train);
     let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));

@@ -22,7 +22,12 @@ pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure
     let serve = |listener| watch::serve(listener, vec![path.clone()], Vec::new(), catalogue);
     let page = listener.map(serve).transpose()?;
     if let Some(page) = &page {
-        output::remark(&format!("watch it at {}", page.url()));
+        if args.quiet {
+            // Without it nobody finds the page, and where it needs a token nobody gets in.
+            output::print(&format!("{}\n", page.url()))?;
+        } else {
+            output::remark(&format!("watch it at {}", page.url()));
+        }
     }
     let mut progress = Progress::new(session.assembly());
     let mut silence = ();
@@ -33,7 +38,7 @@ pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure
     if !args.quiet {
         output::print(&report::training(&summary, &path))?;
     }
-    if let Some(page) = &page {
+    if let Some(page) = page.as_ref().filter(|_| !args.quiet) {
         output::remark(&format!("the page stays at {} until Ctrl-C", page.url()));
         watch::wait(&stop);
     }

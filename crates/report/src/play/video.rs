@@ -4,6 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use hwasp_settings::text::printable_lines;
+
 use super::{Picture, PlayError};
 
 /// Lets `ffmpeg` write a film, the format by the name's ending: pictures of one size, `pace` seconds each, the last one for `rest`
@@ -38,7 +40,8 @@ pub(super) fn write(path: &Path, pictures: &[Picture], pace: f64, rest: f64) -> 
     let ended = encoder.wait_with_output().map_err(|error| failed(error.to_string()))?;
     // What it says tells more than that it took no more pixels.
     if !ended.status.success() {
-        return Err(failed(String::from_utf8_lossy(&ended.stderr).trim().to_owned()));
+        let said = printable_lines(&String::from_utf8_lossy(&ended.stderr));
+        return Err(failed(if said.trim().is_empty() { ended.status.to_string() } else { said.trim().to_owned() }));
     }
     given.map_err(|error| failed(error.to_string()))
 }

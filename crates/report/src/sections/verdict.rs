@@ -142,6 +142,10 @@ fn buildable(run: &Run) -> Row {
 
 fn robust(run: &Run) -> Row {
     let question = "Does it stand errors of the workshop?";
+    if run.design.groups.is_empty() {
+        let told = "Nothing is designed, so no part of a design can be off.".to_owned();
+        return Row { question, answer: Answer::Open, told, command: None };
+    }
     let Some(list) = &run.tolerances else {
         let told = "Nobody has simulated parameters that are off. What does:".to_owned();
         let command = Some(format!("hwasp tolerances {}", run.typed_path()));

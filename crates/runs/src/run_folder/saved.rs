@@ -1,7 +1,7 @@
 //! Run folders read back.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -70,8 +70,12 @@ impl SavedRun {
     /// The trained parameters; those of the newest checkpoint where the training did not come to its end.
     pub fn params(&self) -> Result<Vec<f32>, RunError> {
         let path = self.path.join(POLICY);
-        if !path.is_file() {
+        let finished = self.path.join(SUMMARY).is_file();
+        if !path.is_file() && !finished {
             return self.params_so_far();
+        }
+        if path.exists() && !path.is_file() {
+            return Err(io_error("read", &path, io::Error::other("it is no file")));
         }
         let bytes = read_limited(&path, LARGEST_POLICY)?;
         read_policy(&self.trained.policy, &bytes).map_err(|source| RunError::Policy { path, source })
@@ -150,6 +154,10 @@ pub fn saved_summary(run: &Path) -> Result<Summary, RunError> {
 /// The learning curve of a run folder.
 pub fn saved_metrics(run: &Path) -> Result<MetricsTable, RunError> {
     let path = run.join(METRICS);
+    // A pipe would be waited for.
+    if path.exists() && !path.is_file() {
+        return Err(io_error("read", &path, io::Error::other("it is no file")));
+    }
     let file = File::open(&path).map_err(|source| io_error("read", &path, source))?;
     MetricsTable::read(BufReader::new(file)).map_err(|source| RunError::Metrics { path, source })
 }

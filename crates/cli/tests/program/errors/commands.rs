@@ -15,6 +15,7 @@ pub(super) const CASES: &[Case] = &[
     case("No run to watch", Nothing, "hwasp watch"),
     case("A file to watch", Made(|s| s.write("run", "a file")), "hwasp watch run"),
     case("A page at no address", Nothing, "hwasp watch run --bind everywhere"),
+    case("A page by the address of another", Nothing, "hwasp watch run --host http://box.lan/"),
     case("A page of a training at no address", Nothing, "hwasp train reach --watch=0.0.0.0:99999"),
     case("A misspelt option", Nothing, "hwasp train reach --sed 3"),
     case("An option of a command before it", Nothing, "hwasp --threads 2 train reach"),

@@ -32,6 +32,7 @@ export class Robot {
     this.setStages(0);
     Object.assign(this, { request: null, busy: null, shown: "", wanted: new Map() });
     this.costs.hidden = true;
+    this.costs.replaceChildren();
     tell(this.note, "");
   }
 

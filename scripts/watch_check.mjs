@@ -1,5 +1,5 @@
 // Opens the page of `hwasp watch` in a headless Chromium and checks it as somebody would use it: a training is started and its
-// curve grows, its robot moves, a slider changes the design and both robots are shown, a reload changes nothing, the program
+// curve grows, its robot moves, a slider changes the design and both robots are shown, other runs are chosen, a reload changes nothing, the program
 // dies and the page says so and comes back with it. Besides: accessibility (axe-core), nothing in the console, nothing wider than
 // the screen, the bytes of the page, the time of a frame.
 //
@@ -55,6 +55,13 @@ function start(...args) {
     child.stderr.on("data", hear);
     child.on("exit", (code) => failed(new Error(`${args.join(" ")} ended with ${code}: ${told}`)));
   });
+}
+
+// Trains to the end.
+function train(experiment, steps) {
+  const child = spawn(program, ["train", experiment, "--env-steps", steps, "--out", join("runs", experiment)], { cwd: folder, stdio: "ignore" });
+  children.push(child);
+  return new Promise((done, failed) => child.on("exit", (code) => (code === 0 ? done() : failed(new Error(`train ${experiment} ended with ${code}`)))));
 }
 
 function end(child, signal) {
@@ -123,6 +130,11 @@ async function check() {
   if ((await value()) === trained || !(await value()).includes("→")) fault(`the slider changes nothing: ${await value()}`);
   await wait("two episodes", () => document.querySelectorAll("#stages.two canvas").length === 2);
   await wait("what it costs", () => /difference/.test(document.querySelector("#cost table")?.textContent));
+  if (!/ of training; in brackets|before training; in brackets/.test(await text("#cost caption"))) fault(`the cost tells of no checkpoint: ${await text("#cost caption")}`);
+  const total = await text("#design-rows .group > .param output");
+  if (!total.includes("→")) fault(`the total stays: ${total}`);
+  const sizes = new Set(await page.$$eval("#stages canvas", (all) => all.map((one) => `${one.clientWidth} x ${one.clientHeight}`)));
+  if (sizes.size !== 1) fault(`the two pictures have other sizes: ${[...sizes].join(", ")}`);
   await plays("the two episodes play");
   // What is looked at stands still meanwhile.
   await page.click("#follow");
@@ -151,10 +163,12 @@ async function check() {
   await wait("the page says that nobody answers", () => document.querySelector("#link.lost") && !document.querySelector("#trouble").hidden);
   if (!/does not answer/.test(await text("#trouble"))) fault(`the page says: ${await text("#trouble")}`);
   await shoot("lost");
-  const again = await start("watch", "run", ...(hand ? [hand] : []), "--port", String(port));
+  for (const [experiment, steps] of [["balanced-arm", "2000"], ["mass-spring", "20000"]]) await train(experiment, steps);
+  const again = await start("watch", "run", "runs", ...(hand ? [hand] : []), "--port", String(port));
   await wait("the page comes back by itself", () => document.querySelector("#link.live") && document.querySelector("#trouble").hidden);
   quiet = true;
   await wait("the run counts as interrupted", () => document.querySelector("#run-list .state.interrupted"));
+  await others(page, { wait, text });
   if (hand) await frames(page, { wait, media, shoot });
   if ((await end(again.child, "SIGINT")) !== 0) fault("Ctrl-C is no good end");
 }
@@ -177,9 +191,29 @@ async function views(page, { media, shoot, name }) {
   await media("light", "no-preference");
 }
 
+// Runs whose designs have a group of one name: each shows its own parameters and limits, and a slider of one is none of the other.
+async function others(page, { wait, text }) {
+  const names = await page.$$eval("#run-list .name", (all) => all.map((one) => one.textContent));
+  const design = () => page.$eval("#design-rows", (rows) => rows.textContent);
+  for (const [name, parameters] of [["runs/balanced-arm", 1], ["runs/mass-spring", 10], ["runs/balanced-arm", 1]]) {
+    const index = names.indexOf(name), before = await design();
+    if (index < 0) throw new Error(`the list has no ${name}: ${names.join(", ")}`);
+    await page.evaluate((index) => document.querySelectorAll("#run-list .pick")[index].click(), index);
+    await wait(`the design of ${name}`, ([parameters, before]) => document.querySelectorAll("#design-rows input[type=range]:enabled").length === parameters && document.querySelector("#design-rows").textContent !== before, [parameters, before]);
+    const shown = await page.$$eval("#run-list .in-chart input", (all) => all.flatMap((box, i) => (box.checked ? [i] : [])));
+    const alike = names.flatMap((other, i) => ((other === "runs/balanced-arm") === (parameters === 1) && !/hand|grasp/.test(other) ? [i] : []));
+    if (String(shown) !== String(alike)) fault(`${name} shares its chart with ${shown}, not with ${alike}`);
+    if (!(await text(`#run-list li:nth-child(${index + 1}) .what`)).startsWith(name.split("/")[1])) fault(`${name} is not told by its experiment`);
+    await page.focus("#design-rows input[type=range]:enabled");
+    for (let i = 0; i < 8; i++) await page.keyboard.press("ArrowRight");
+    await wait(`what a change of ${name} costs`, () => /as trained/.test(document.querySelector("#cost caption")?.textContent) && !document.querySelector("#cost.old"));
+  }
+  if (!(await page.$eval("#trouble", (element) => element.hidden))) fault(`the page says: ${await text("#trouble")}`);
+}
+
 // The time between the frames of a hand that moves.
 async function frames(page, { wait, media, shoot }) {
-  await page.evaluate(() => document.querySelectorAll("#run-list .pick")[1].click());
+  await page.evaluate(() => [...document.querySelectorAll("#run-list .pick")].at(-1).click());
   await wait("the hand", () => /as trained/.test(document.querySelector("#robot-note").textContent) && document.querySelector("#stages canvas"));
   await sleep(500);
   const times = await page.evaluate(() => new Promise((done) => {

@@ -6,7 +6,7 @@ import { ask } from "./server.js";
 import { el, mark, spoken, tell, title } from "./words.js";
 
 const PACE = 1000, PACE_HIDDEN = 10_000, PACE_SILENT = 2000; // ms between two looks
-const MOST_SHOWN = 12; // runs in the chart unless somebody asks for more
+const MOST_SHOWN = 12; // runs of an experiment in the chart unless somebody asks for more
 const KINDS = { return: "Return", reward: "Terms of the reward", design: "Design", learner: "Learner" };
 const $ = (id) => document.getElementById(id);
 
@@ -18,7 +18,7 @@ const memory = {
 
 const state = {
   server: null, runs: [], details: new Map(), design: new Map(),
-  chosen: null, shown: null, column: memory.get("column") ?? "return/return", axis: memory.get("axis") ?? "env_steps",
+  chosen: null, shown: new Set(), boxes: memory.get("boxes") ?? {}, column: memory.get("column") ?? "return/return", axis: memory.get("axis") ?? "env_steps",
 };
 const tag = {};
 
@@ -54,14 +54,12 @@ function pick(index) {
   memory.set("chosen", state.runs[index].label);
   if (state.chosen !== index) design.reset();
   state.chosen = index;
-  state.shown.add(index);
+  delete state.boxes[state.runs[index].label];
   look();
 }
 
 function toggle(index, on) {
-  if (on) state.shown.add(index);
-  else state.shown.delete(index);
-  memory.set("hidden", state.runs.filter((run) => !state.shown.has(run.index)).map((run) => run.label));
+  state.boxes[state.runs[index].label] = on;
   look();
 }
 
@@ -115,6 +113,7 @@ async function fetchNew() {
     note(list);
     choose();
   }
+  share();
   for (const run of state.runs) {
     if (run.index !== state.chosen && !state.shown.has(run.index)) continue;
     const known = state.details.get(run.index);
@@ -133,19 +132,23 @@ function note({ waiting, full, runs: { length } }) {
   tell($("runs-note"), parts.join(" "));
 }
 
-// Takes a run to look at, and those in the chart, where that is open.
+// Takes a run to look at, where that is open.
 function choose() {
-  const hidden = new Set(memory.get("hidden") ?? []);
-  state.shown ??= new Set();
-  state.seen ??= 0;
-  for (const run of state.runs.slice(state.seen)) {
-    if (run.index < MOST_SHOWN && !hidden.has(run.label)) state.shown.add(run.index);
-  }
-  state.seen = Math.max(state.seen, state.runs.length);
   if (state.runs[state.chosen]) return;
   const last = state.runs.find((run) => run.label === memory.get("chosen"));
   const training = state.runs.find((run) => run.state === "training");
   state.chosen = (last ?? training ?? state.runs[0])?.index ?? null;
+}
+
+const experiment = (run) => run.experiment ?? run.problem;
+
+// Takes the runs in the chart: those of the same experiment, for returns of others have another scale, and what the boxes say.
+function share() {
+  memory.set("boxes", state.boxes);
+  const chosen = state.runs[state.chosen];
+  if (!chosen) return;
+  const alike = state.runs.filter((run) => experiment(run) === experiment(chosen)).slice(0, MOST_SHOWN);
+  state.shown = new Set(state.runs.filter((run) => state.boxes[run.label] ?? (run === chosen || alike.includes(run))).map((run) => run.index));
 }
 
 // Puts new points behind those that are there.
@@ -163,7 +166,7 @@ function merge(known, detail) {
 
 function render() {
   const detail = state.details.get(state.chosen);
-  runs.show(state.runs, state.chosen, state.shown ?? new Set());
+  runs.show(state.runs, state.chosen, state.shown);
   for (const id of ["curves", "robot", "design"]) $(id).hidden = !detail;
   document.title = detail ? `${percent(detail)}${title(detail.label)} · hwasp watch` : "hwasp watch";
   if (!detail) return;
@@ -176,6 +179,7 @@ function render() {
   const values = state.design.get(detail.index);
   const parameters = detail.design.flatMap((group) => group.parameters);
   design.show(detail, values && new Map(parameters.map((parameter, i) => [parameter, values[i]])));
+  $("back").hidden = design.wanted.size === 0;
   $("result").hidden = !detail.summary;
   if (detail.summary) result($("result-rows"), detail.summary);
   $("log").hidden = detail.log.length === 0;
@@ -215,6 +219,7 @@ function drawChart(kind, name) {
   }
   const detail = state.details.get(state.chosen);
   notes.push(...detail.faults.map((fault) => `Note: ${fault}.`));
+  if (state.runs.some((run) => !state.shown.has(run.index) && experiment(run) !== experiment(detail))) notes.push("Runs of other experiments are left out; their boxes add them.");
   if (detail.curve.env_steps.length === 0) notes.push("No iteration is done yet.");
   tell($("chart-note"), notes.join(" "));
   const label = `${spoken(name)}${unit ? ` in ${unit}` : ""} of ${lines.length === 1 ? lines[0].name : `${lines.length} runs`}`;

@@ -31,7 +31,7 @@ export class Runs {
       tell(card.state, STATES[run.state]);
       card.state.className = `state ${run.state}`;
       tell(card.facts, facts(run));
-      tell(card.what, [run.problem, run.method, run.seed === null ? null : `seed ${run.seed}`].filter(Boolean).join(" · "));
+      tell(card.what, [run.experiment ?? run.problem, run.method, run.seed === null ? null : `seed ${run.seed}`].filter(Boolean).join(" · "));
       card.button.setAttribute("aria-pressed", String(run.index === chosen));
       card.item.classList.toggle("chosen", run.index === chosen);
       card.box.checked = shown.has(run.index);
@@ -97,19 +97,17 @@ export class Design {
 
   // `known`: the values of the newest controller by parameter, SI.
   show(detail, known) {
-    const key = `${detail.curve.epoch} ${detail.design.map((group) => group.name)} ${detail.simulates}`;
+    // Two runs may have groups of the same name with other limits and counts.
+    const kinds = detail.design.map(({ name, parameters, limits, unit, optimum }) => [name, parameters, limits, unit, optimum]);
+    const key = JSON.stringify([detail.index, detail.curve.epoch, detail.simulates, kinds]);
     if (key !== this.built) this.build(detail, key);
     for (const group of detail.design) {
-      const { head } = this.rows.get(group.name);
       const single = group.parameters.length === 1;
-      if (head) {
-        tell(head.value, this.told(group, group.total));
-        this.place(head.track, "--now", group.total, group, group.parameters.length);
-      }
       group.parameters.forEach((name, i) => {
         const live = single ? (detail.state === "training" ? group.total : group.values?.[0] ?? group.total) : group.values?.[i];
         this.value(group, name, live ?? known?.get(name) ?? null);
       });
+      this.total(group);
     }
   }
 
@@ -123,14 +121,11 @@ export class Design {
 
   group(group, simulates) {
     const rows = group.parameters.map((name) => this.row(group, name, simulates));
-    if (rows.length === 1) {
-      this.rows.set(group.name, { ...this.rows.get(group.name), head: null });
-      return rows[0];
-    }
-    const head = { value: el("output"), track: this.track(group, group.parameters.length) };
-    this.rows.set(group.name, { head });
-    return el("div", { className: "group" },
-      el("div", { className: "param" }, el("span", { title: group.meaning || undefined }, `${spoken(group.name)}, total of ${rows.length}`), head.value, head.track, this.ends(group, rows.length)),
+    if (rows.length === 1) return rows[0];
+    const head = { value: el("output"), track: this.track(group, rows.length) };
+    head.element = el("div", { className: "param" }, el("span", { title: group.meaning || undefined }, `${spoken(group.name)}, total of ${rows.length}`), head.value, head.track, this.ends(group, rows.length));
+    this.rows.set(`group ${group.name}`, head);
+    return el("div", { className: "group" }, head.element,
       el("details", { open: rows.length <= 12 }, el("summary", {}, `each of the ${rows.length}`), ...rows));
   }
 
@@ -178,18 +173,35 @@ export class Design {
     const row = this.rows.get(`parameter ${name}`), wanted = this.wanted.get(name);
     row.current = current;
     this.place(row.track, "--now", current, group, 1);
-    row.element.classList.toggle("changed", wanted !== undefined);
-    if (wanted === undefined) tell(row.value, this.told(group, current));
-    else tell(row.value, `${number(current === null ? null : current / group.to_si)} → ${this.told(group, wanted)}`);
+    this.change(row, group, current, wanted);
     if (!row.slider) return;
     row.slider.disabled = current === null;
     if (wanted === undefined && current !== null) row.slider.value = current;
     row.slider.setAttribute("aria-valuetext", row.value.textContent);
   }
 
+  // Writes the total of a group of several, and what it would be.
+  total(group) {
+    const head = this.rows.get(`group ${group.name}`);
+    if (!head) return;
+    this.place(head.track, "--now", group.total, group, group.parameters.length);
+    const current = group.parameters.map((name) => this.rows.get(`parameter ${name}`).current);
+    const sum = (values) => values.reduce((a, b) => a + b, 0);
+    const changed = group.parameters.some((name) => this.wanted.has(name)) && !current.includes(null);
+    if (changed) this.change(head, group, sum(current), sum(group.parameters.map((name, i) => this.wanted.get(name) ?? current[i])));
+    else this.change(head, group, group.total);
+  }
+
+  // Writes a value, and behind an arrow the one that is wanted in its place.
+  change({ element, value }, group, current, wanted) {
+    element.classList.toggle("changed", wanted !== undefined);
+    tell(value, wanted === undefined ? this.told(group, current) : `${number(current === null ? null : current / group.to_si)} → ${this.told(group, wanted)}`);
+  }
+
   want(group, name, value) {
     this.wanted.set(name, value);
     this.value(group, name, this.rows.get(`parameter ${name}`).current);
+    this.total(group);
     this.moved(this.wanted);
   }
 
@@ -218,8 +230,8 @@ export function result(element, summary) {
   );
 }
 
-// What a change of the design costs.
-export function cost(element, { before, after, change }) {
+// What a change of the design costs. `when`: how far its controller is.
+export function cost(element, { before, after, change }, when) {
   const success = (judged) => judged.success?.find(({ kind }) => kind === "all");
   const all = success(before) && success(after);
   const head = ["", "Return", ...(all ? ["Success"] : [])];
@@ -229,7 +241,7 @@ export function cost(element, { before, after, change }) {
     ["difference", interval(change.return), ...(all && change.success ? [`${(100 * change.success.mean).toFixed(1).replace("-", "−")} points`] : [])],
   ];
   element.replaceChildren(el("table", {},
-    el("caption", {}, `On the same ${change.episodes} held-out episodes, by the same controller; in brackets a 95 % interval.`),
+    el("caption", {}, `On the same ${change.episodes} held-out episodes, by the controller ${when}; in brackets a 95 % interval.`),
     el("thead", {}, el("tr", {}, ...head.map((text) => (text ? el("th", { scope: "col" }, text) : el("td"))))),
     el("tbody", {}, ...rows.map(([name, ...values]) => el("tr", {}, el("th", { scope: "row" }, name), ...values.map((text) => el("td", {}, text))))),
   ));

@@ -8,7 +8,7 @@ const PATIENCE = 250; // ms without a further change before a design is simulate
 export class Robot {
   // `learned`: is told the design of the controller that is shown, by parameter.
   constructor({ stages, note, costs, follow }, learned) {
-    Object.assign(this, { stages, note, costs, follow, learned, viewers: [], shown: "", wanted: new Map(), detail: null });
+    Object.assign(this, { stages, note, costs, follow, learned, viewers: [], busy: null, shown: "", wanted: new Map(), detail: null });
     follow.addEventListener("change", () => this.update());
   }
 
@@ -30,8 +30,9 @@ export class Robot {
     this.request?.abort();
     clearTimeout(this.timer);
     this.setStages(0);
-    Object.assign(this, { request: null, asked: "", shown: "", wanted: new Map() });
+    Object.assign(this, { request: null, busy: null, shown: "", wanted: new Map() });
     this.costs.hidden = true;
+    this.costs.replaceChildren();
     tell(this.note, "");
   }
 
@@ -43,22 +44,26 @@ export class Robot {
     const wish = `${detail.index} ${detail.curve.epoch} ${query}`, policy = detail.policy;
     const due = wish !== this.shownWish || (policy !== this.shownPolicy && this.follow.checked);
     const asked = `${wish} ${policy}`;
-    if (!due && this.shown) return;
-    if (asked === this.asked || asked === this.shown) return;
+    // What began with a checkpoint comes to its end with it; only then a newer one is taken.
+    if (wish === this.busy || asked === this.shown || (!due && this.shown)) return;
     this.request?.abort();
     this.request = new AbortController();
-    this.asked = asked;
+    this.busy = wish;
+    const { signal } = this.request;
     if (!this.shown || query) tell(this.note, "Simulating …");
     const path = `/api/runs/${detail.index}/${query ? `what-if?${query}` : "episode"}`;
-    ask(path, { signal: this.request.signal }).then(
-      (answer) => {
-        Object.assign(this, { shown: asked, shownWish: wish, shownPolicy: policy, asked: "" });
-        if (query) this.compared(answer, `/api/runs/${detail.index}/cost?${query}`, this.request.signal);
+    ask(path, { signal }).then(
+      async (answer) => {
+        Object.assign(this, { shown: asked, shownWish: wish, shownPolicy: policy });
+        if (query) await this.compared(answer, `/api/runs/${detail.index}/cost/${answer.policy}?${query}`, signal);
         else this.episodes(answer);
+        if (signal.aborted) return;
+        this.busy = null;
+        this.update();
       },
       (error) => {
         if (error.name === "AbortError") return;
-        this.asked = "";
+        this.busy = null;
         // What cannot be simulated is not asked for again; what was too much at once, or had no answer, is.
         if ([0, 503, 504].includes(error.status)) return;
         Object.assign(this, { shown: asked, shownWish: wish, shownPolicy: policy });
@@ -67,9 +72,13 @@ export class Robot {
     );
   }
 
-  told({ policy, env_steps: steps }, what) {
-    const when = policy === "first" ? "as it begins, before training" : steps === null ? "as trained" : `after ${short(steps)} steps of training`;
-    return `The controller ${when}, ${what}`;
+  // How far a controller is.
+  when({ policy, env_steps: steps }) {
+    return policy === "first" ? "as it begins, before training" : steps === null ? "as trained" : `after ${short(steps)} steps of training`;
+  }
+
+  told(answer, what) {
+    return `The controller ${this.when(answer)}, ${what}`;
   }
 
   episodes(answer) {
@@ -92,9 +101,9 @@ export class Robot {
     this.costs.hidden = false;
     this.costs.classList.add("old");
     if (this.costs.childElementCount === 0) this.costs.textContent = "Counting what it costs …";
-    ask(costs, { signal }).then(
-      (answer) => {
-        cost(this.costs, answer);
+    return ask(costs, { signal }).then(
+      (judged) => {
+        cost(this.costs, judged, this.when(answer));
         this.costs.classList.remove("old");
       },
       (error) => {

@@ -7,7 +7,7 @@
 //! | `/api/runs/0` | one of them: curve, design, terms of the reward, log. `?since=EPOCH.WIDTH.POINTS` leaves out the points that a page has |
 //! | `/api/runs/0/episode` | episodes of its newest controller in three dimensions, and the design that they are on |
 //! | `/api/runs/0/what-if?NAME=VALUE…` | the same episode on this design and on one with other values, SI |
-//! | `/api/runs/0/cost?NAME=VALUE…` | what these values change in return and success, on more episodes |
+//! | `/api/runs/0/cost/POLICY?NAME=VALUE…` | what these values change in return and success, on more episodes, by the controller of the what-if before |
 //!
 //! The answers are JSON. Those of the first two have a tag, and with `If-None-Match` nothing comes where nothing is new.
 
@@ -44,7 +44,8 @@ enum Path {
     Run(usize),
     Episode(usize),
     WhatIf(usize),
-    Cost(usize),
+    /// With the name of its controller.
+    Cost(usize, String),
 }
 
 impl Path {
@@ -60,8 +61,7 @@ impl Path {
             "" if !rest.ends_with('/') => Some(Self::Run(index)),
             "episode" => Some(Self::Episode(index)),
             "what-if" => Some(Self::WhatIf(index)),
-            "cost" => Some(Self::Cost(index)),
-            _ => None,
+            _ => Some(Self::Cost(index, what.strip_prefix("cost/").filter(|name| !name.contains('/'))?.to_owned())),
         }
     }
 }
@@ -97,7 +97,7 @@ impl Desk {
             }
             Path::Episode(index) => (index, Ok(What::Episode)),
             Path::WhatIf(index) => (index, values(query).map(What::Changed)),
-            Path::Cost(index) => (index, values(query).map(What::Cost)),
+            Path::Cost(index, policy) => (index, values(query).map(|values| What::Cost(policy, values))),
         };
         let what = match what {
             Ok(what) => what,

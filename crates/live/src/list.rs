@@ -13,8 +13,10 @@ use crate::stamp::Stamp;
 
 /// The most runs of a page.
 pub(crate) const MOST_RUNS: usize = 100;
-/// How deep below a folder runs are looked for: those of a comparison lie in its folder `cells`.
-const DEPTH: usize = 2;
+/// How deep below a folder runs are looked for. The deepest are those of comparisons.
+const DEPTH: usize = 3;
+/// The folder of a comparison with its runs.
+const CELLS: &str = "cells";
 /// Entries of a folder that are looked at.
 const MOST_ENTRIES: usize = 10_000;
 /// Who asks sooner gets what was found before.
@@ -52,7 +54,13 @@ impl List {
         if self.refreshed.is_some_and(|at| at.elapsed() < FRESH) {
             return;
         }
-        let found: Vec<PathBuf> = self.given.iter().flat_map(|path| runs_at(path, DEPTH)).collect();
+        let below = |path: &PathBuf| {
+            let mut found = runs_at(path, DEPTH);
+            // Those of comparisons, which may be many, come last.
+            found.sort_by_key(|run| run.components().count());
+            found
+        };
+        let found: Vec<PathBuf> = self.given.iter().flat_map(below).collect();
         for path in found {
             if self.runs.len() < MOST_RUNS && self.runs.iter().all(|run| run.path != path) {
                 let label = path.display().to_string();
@@ -94,7 +102,7 @@ fn runs_at(path: &Path, depth: usize) -> Vec<PathBuf> {
     if Stamp::of(&path.join(EXPERIMENT)).is_some() {
         return vec![path.to_owned()];
     }
-    if depth == 0 {
+    if depth == 0 || depth == 1 && !path.ends_with(CELLS) {
         return Vec::new();
     }
     let entries = fs::read_dir(path).into_iter().flatten().take(MOST_ENTRIES).flatten();

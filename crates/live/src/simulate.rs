@@ -21,6 +21,8 @@ use crate::stamp::Stamp;
 const JUDGED: u64 = 20;
 /// Episodes that are shown of a training that goes on: its time is dear.
 const WHILE_TRAINING: u64 = 2;
+/// Controllers that are kept, at most.
+const MOST_OPENED: usize = 4;
 /// How often a checkpoint is looked for that a training has just replaced.
 const TRIES: usize = 3;
 
@@ -40,14 +42,14 @@ pub(crate) enum What {
     Episode,
     /// An episode on both its design and one with these values, SI.
     Changed(Vec<(String, f64)>),
-    /// What such a design is worth more, or less, on more episodes.
-    Cost(Vec<(String, f64)>),
+    /// What such a design is worth more, or less, on more episodes, by the controller of this name.
+    Cost(String, Vec<(String, f64)>),
 }
 
-/// A run whose episodes are asked for, one after the other.
+/// The controllers whose episodes are asked for, the latest first. Of a training they are kept although it goes on.
 #[derive(Default)]
 pub(crate) struct Stage {
-    opened: Option<Opened>,
+    opened: Vec<Opened>,
 }
 
 struct Opened {
@@ -100,19 +102,23 @@ struct Cost {
 impl Stage {
     /// The answer, and whether it is worth to be kept.
     pub(crate) fn answer(&mut self, asked: &Asked, catalogue: &Catalogue) -> (Answer, bool) {
-        let known = |opened: &Opened| {
-            (&opened.run, opened.experiment, opened.policy) == (&asked.run, asked.experiment, asked.policy)
-        };
-        let mut opened = match self.opened.take().filter(known).map_or_else(|| open(asked, catalogue), Ok) {
+        let place = self.opened.iter().position(|opened| opened.serves(asked));
+        let opened = match place.map_or_else(|| open(asked, catalogue), |place| Ok(self.opened.remove(place))) {
             Ok(opened) => opened,
             Err(error) => return (Answer::fault(StatusCode::CONFLICT, &error), false),
         };
+        self.opened.truncate(MOST_OPENED - 1);
+        self.opened.insert(0, opened);
+        let opened = &mut self.opened[0];
         let answer = match &asked.what {
             What::Episode => opened.episodes(),
             What::Changed(values) => opened.compared(values),
-            What::Cost(values) => opened.cost(values),
+            What::Cost(policy, values) if *policy == opened.policy.name() => opened.cost(values),
+            What::Cost(policy, _) => Err(Answer::fault(
+                StatusCode::CONFLICT,
+                &format!("the controller {policy} is no longer there; the newest is {}", opened.policy.name()),
+            )),
         };
-        self.opened = Some(opened);
         match answer {
             Ok(answer) => (answer, true),
             Err(answer) => (answer, false),
@@ -165,6 +171,15 @@ fn params(saved: &SavedRun, policy: Policy) -> Result<(Vec<f32>, Option<u64>), R
 }
 
 impl Opened {
+    /// Whether it is what is asked for.
+    fn serves(&self, asked: &Asked) -> bool {
+        let policy = match &asked.what {
+            What::Cost(policy, _) => self.policy.name() == *policy,
+            What::Episode | What::Changed(_) => self.policy == asked.policy,
+        };
+        policy && (&self.run, self.experiment) == (&asked.run, asked.experiment)
+    }
+
     fn assembly(&self) -> &Assembly {
         self.saved.assembly()
     }

@@ -17,6 +17,7 @@ fn a_folder_stands_for_the_runs_in_it() {
     let folder = empty("folders");
     trained(&folder.join("b"));
     trained(&folder.join("comparison/cells/m-seed0"));
+    trained(&folder.join("notes/of/mine"));
     fs::create_dir_all(folder.join("notes/of/mine/deep")).unwrap();
     let server = serve(&[folder.join("comparison"), folder.clone(), folder.join("b")]);
     let list = get(&server, "/api/runs").json();
@@ -27,4 +28,15 @@ fn a_folder_stands_for_the_runs_in_it() {
     assert_eq!(labels(&list), ["comparison/cells/m-seed0", "b", "a"]);
     assert_eq!((&list["waiting"], &list["full"]), (&json!([]), &json!(false)));
     assert_eq!(get(&server, "/api/runs/2").json()["index"], json!(2));
+}
+
+/// Its runs come behind those that lie nearer.
+#[test]
+fn a_folder_stands_for_the_comparisons_in_it() {
+    let folder = empty("compared-folders");
+    for run in ["compare-reach/cells/a-seed0", "compare-reach/cells/b-seed0", "z", "compare-reach/other/c"] {
+        trained(&folder.join(run));
+    }
+    let list = get(&serve(std::slice::from_ref(&folder)), "/api/runs").json();
+    assert_eq!(labels(&list), ["z", "compare-reach/cells/a-seed0", "compare-reach/cells/b-seed0"]);
 }

@@ -23,7 +23,7 @@ fn more_simulations_than_can_wait_are_put_off() {
     let statuses: Vec<u16> = thread::scope(|scope| {
         let ask = |i: u32| {
             let value = low + (high - low) * f64::from(i) / 100.0;
-            let (server, path) = (&server, format!("/api/runs/0/cost?{name}={value}"));
+            let (server, path) = (&server, format!("/api/runs/0/cost/last?{name}={value}"));
             scope.spawn(move || ask(server, "GET", &path, &[]).status)
         };
         let asked: Vec<_> = (0..60).map(ask).collect();
@@ -31,7 +31,7 @@ fn more_simulations_than_can_wait_are_put_off() {
     });
     let many = |status| statuses.iter().filter(|found| **found == status).count();
     assert!(many(200) >= 4 && many(503) > 0 && many(200) + many(503) == 60, "{statuses:?}");
-    assert_eq!(get(&server, &format!("/api/runs/0/cost?{name}={low}")).status, 200);
+    assert_eq!(get(&server, &format!("/api/runs/0/cost/last?{name}={low}")).status, 200);
 }
 
 /// A training that everybody looks at comes to the same bits.

@@ -76,6 +76,8 @@ fn nothing_is_anywhere_else() {
         "/api/runs/0x0",
         "/api/runs/00000000000000000000000000",
         "/api/runs/0/episode/",
+        "/api/runs/0/cost",
+        "/api/runs/0/cost/last/",
         "/API/runs",
         "/index.html",
         "//",

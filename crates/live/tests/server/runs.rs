@@ -172,6 +172,28 @@ fn episodes_are_those_of_the_newest_controller() {
     assert!(!last["scene"]["takes"].as_array().unwrap().is_empty());
 }
 
+/// Training goes on meanwhile, and replaces the checkpoint.
+#[test]
+fn the_cost_is_that_of_the_controller_that_was_shown() {
+    let folder = empty("cost-of");
+    let run = folder.join("run");
+    drop(begin(&run, &experiment(), Keeping::default()));
+    let server = serve(std::slice::from_ref(&run));
+    let detail = get(&server, "/api/runs/0").json();
+    let (name, low) = (&detail["design"][0]["parameters"][0], &detail["design"][0]["limits"][0]);
+    let query = format!("{}={low}", name.as_str().unwrap());
+    assert_eq!(get(&server, &format!("/api/runs/0/what-if?{query}")).json()["policy"], json!("first"));
+    let elsewhere = folder.join("elsewhere");
+    trained(&elsewhere);
+    fs::rename(elsewhere.join("policy.safetensors"), run.join("policy.safetensors")).unwrap();
+    wait(&server, "/api/runs/0", |value| value["policy"] == json!("last"));
+    let (of_first, of_last) = (format!("/api/runs/0/cost/first?{query}"), format!("/api/runs/0/cost/last?{query}"));
+    let (of_first, of_last) = (get(&server, &of_first).json(), get(&server, &of_last).json());
+    assert_ne!(of_first["before"]["return"]["mean"], of_last["before"]["return"]["mean"]);
+    let gone = get(&server, &format!("/api/runs/0/cost/checkpoint-3?{query}"));
+    assert!(gone.status == 409 && gone.text().contains("the newest is last"), "{}", gone.text());
+}
+
 #[test]
 fn another_design_is_simulated_and_what_it_costs_is_told() {
     let folder = empty("what-if");
@@ -188,12 +210,12 @@ fn another_design_is_simulated_and_what_it_costs_is_told() {
     let own = group["values"][0].as_f64().unwrap();
     let same = get(&server, &format!("/api/runs/0/what-if?{name}={own}")).json();
     assert_eq!(same["before"], same["after"]);
-    let cost = get(&server, &format!("/api/runs/0/cost?{name}={own}")).json();
+    let cost = get(&server, &format!("/api/runs/0/cost/last?{name}={own}")).json();
     assert_eq!(cost["change"]["return"]["mean"], json!(0.0));
     let other = get(&server, &format!("/api/runs/0/what-if?{name}={low}")).json();
     assert_eq!(other["after"]["design"][0], json!(low));
     assert_ne!(other["before"]["scene"], other["after"]["scene"]);
-    let cost = get(&server, &format!("/api/runs/0/cost?{name}={low}")).json();
+    let cost = get(&server, &format!("/api/runs/0/cost/last?{name}={low}")).json();
     let mean = |what: &str| cost[what]["return"]["mean"].as_f64().unwrap();
     let change = cost["change"]["return"]["mean"].as_f64().unwrap();
     assert!((mean("after") - mean("before") - change).abs() < 1e-9 * mean("before").abs() && change < 0.0, "{cost}");

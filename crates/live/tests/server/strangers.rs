@@ -114,7 +114,7 @@ fn piece() -> impl Strategy<Value = Vec<u8>> {
         "/api/runs/0",
         "/episode",
         "/what-if?",
-        "/cost?",
+        "/cost/last?",
         "..",
         "%2e%2e%2f",
         "secret.txt",

@@ -3,9 +3,9 @@
 // dies and the page says so and comes back with it. Besides: accessibility (axe-core), nothing in the console, nothing wider than
 // the screen, the bytes of the page, the time of a frame.
 //
-//   node scripts/watch_check.mjs PROGRAM [--hand RUN] [--shots FOLDER]
+//   node scripts/watch_check.mjs PROGRAM [--hand RUN] [--timed] [--shots FOLDER]
 //
-// PROGRAM is the built `hwasp`; `--hand` names the run of a hand, whose frames are timed; `--shots` keeps pictures. It needs a
+// PROGRAM is the built `hwasp`; `--hand` names the run of a hand, whose frames are timed (with `--timed`, for a machine that does nothing else, more than 60 ms is a fault); `--shots` keeps pictures. It needs a
 // Chromium (CHROMIUM names it, where it is not found) and the packages axe-core and puppeteer-core, as report_check.mjs does.
 import { spawn } from "node:child_process";
 import { createRequire } from "node:module";
@@ -25,6 +25,7 @@ const places = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-br
 const executablePath = places.find((place) => place && existsSync(place));
 if (!executablePath) throw new Error("no Chromium is found; name one with CHROMIUM");
 const words = process.argv.slice(2);
+const timed = words.includes("--timed") && words.splice(words.indexOf("--timed"), 1).length > 0;
 const option = (name) => {
   const at = words.indexOf(name);
   return at < 0 ? undefined : resolve(words.splice(at, 2)[1]);
@@ -227,7 +228,7 @@ async function frames(page, { wait, media, shoot }) {
     });
   }));
   console.log(`a frame of the hand: ${times[30].toFixed(0)} ms, the slowest ${times[59].toFixed(0)} ms`);
-  if (times[30] > MOST_FRAME_MS) fault(`a frame of the hand takes ${times[30].toFixed(0)} ms`);
+  if (timed && times[30] > MOST_FRAME_MS) fault(`a frame of the hand takes ${times[30].toFixed(0)} ms`);
   await shoot("hand");
   await views(page, { media, shoot, name: "hand" });
 }

@@ -70,12 +70,13 @@ impl SavedRun {
     /// The trained parameters; those of the newest checkpoint where the training did not come to its end.
     pub fn params(&self) -> Result<Vec<f32>, RunError> {
         let path = self.path.join(POLICY);
-        let finished = self.path.join(SUMMARY).is_file();
-        if !path.is_file() && !finished {
+        if !path.is_file() {
+            // What a checkpoint has is not what the summary is of.
+            let finished = self.path.join(SUMMARY).is_file();
+            if finished {
+                return Err(RunError::Unfinished { path: self.path.clone(), file: POLICY });
+            }
             return self.params_so_far();
-        }
-        if path.exists() && !path.is_file() {
-            return Err(io_error("read", &path, io::Error::other("it is no file")));
         }
         let bytes = read_limited(&path, LARGEST_POLICY)?;
         read_policy(&self.trained.policy, &bytes).map_err(|source| RunError::Policy { path, source })

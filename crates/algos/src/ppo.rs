@@ -115,9 +115,7 @@ pub struct PpoSettings {
     pub baseline: BaselineConfig,
 }
 
-/// What an update of [`Ppo`] tells.
-const METRICS: &[&str] = &["kl", "entropy", "clip_fraction", "grad_norm", "epochs", "value_loss", "explained_variance"];
-/// The same of a policy that draws a part of the design once an episode.
+/// What an update of [`Ppo`] tells of a policy that draws a part of the design once an episode.
 const DRAW_METRICS: &[&str] = &[
     "kl",
     "entropy",
@@ -129,6 +127,8 @@ const DRAW_METRICS: &[&str] = &[
     "design_kl",
     "design_clip_fraction",
 ];
+/// The same of other policies, which have no draws to tell of.
+const METRICS: &[&str] = DRAW_METRICS.split_at(7).0;
 
 /// What an update of this policy tells.
 fn metric_names(policy: &impl Policy) -> &'static [&'static str] {

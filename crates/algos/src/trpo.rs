@@ -29,19 +29,7 @@ use crate::minibatch::Minibatch;
 /// Keeps the length of a step finite where nothing curves, as the paper's toolkit has it.
 const LEAST_CURVATURE: f64 = 1e-8;
 
-/// What an update of [`Trpo`] tells.
-const METRICS: &[&str] = &[
-    "kl",
-    "entropy",
-    "step_fraction",
-    "gain",
-    "cg_iterations",
-    "tried",
-    "rejected",
-    "value_loss",
-    "explained_variance",
-];
-/// The same of a policy that draws a part of the design once an episode.
+/// What an update of [`Trpo`] tells of a policy that draws a part of the design once an episode.
 const DRAW_METRICS: &[&str] = &[
     "kl",
     "entropy",
@@ -54,6 +42,8 @@ const DRAW_METRICS: &[&str] = &[
     "explained_variance",
     "design_kl",
 ];
+/// The same of other policies, which have no draws to tell of.
+const METRICS: &[&str] = DRAW_METRICS.split_at(9).0;
 
 /// What an update of this policy tells.
 fn metric_names(policy: &impl Policy) -> &'static [&'static str] {

@@ -7,18 +7,12 @@
 // Needs a Chromium (CHROMIUM names it, where it is not found) and the packages axe-core and puppeteer-core, which
 // `npm install --no-save axe-core puppeteer-core` fetches; NODE_PATH may say where they are. `--shots` keeps pictures
 // of each view, and the pages of a print.
-import { createRequire } from "node:module";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { mkdirSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const load = createRequire(join(process.cwd(), "package.json"));
-const puppeteer = load("puppeteer-core");
-const axe = readFileSync(load.resolve("axe-core/axe.min.js"), "utf8");
+import { axe, executablePath, puppeteer } from "./browser.mjs";
 
-const places = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-const executablePath = places.find((place) => place && existsSync(place));
-if (!executablePath) throw new Error("no Chromium is found; name one with CHROMIUM");
 const words = process.argv.slice(2);
 const flag = words.indexOf("--shots");
 const shots = flag < 0 ? undefined : words.splice(flag, 2)[1];

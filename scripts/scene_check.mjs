@@ -7,19 +7,14 @@
 //
 // Needs a Chromium (CHROMIUM names it, where it is not found) and the packages axe-core and puppeteer-core, which
 // `npm install --no-save axe-core puppeteer-core` fetches. `--shots` keeps pictures.
-import { createRequire } from "node:module";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { mkdirSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const MOST_MS = 60;
-const load = createRequire(join(process.cwd(), "package.json"));
-const puppeteer = load("puppeteer-core");
-const axe = readFileSync(load.resolve("axe-core/axe.min.js"), "utf8");
+import { axe, executablePath, puppeteer } from "./browser.mjs";
 
-const places = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-const executablePath = places.find((place) => place && existsSync(place));
-if (!executablePath) throw new Error("no Chromium is found; name one with CHROMIUM");
+const MOST_MS = 60;
+
 const words = process.argv.slice(2);
 const timed = words.includes("--timed") && words.splice(words.indexOf("--timed"), 1).length > 0;
 const flag = words.indexOf("--shots");

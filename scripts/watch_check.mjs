@@ -8,22 +8,16 @@
 // PROGRAM is the built `hwasp`; `--hand` names the run of a hand, whose frames are timed (with `--timed`, for a machine that does nothing else, more than 60 ms is a fault); `--shots` keeps pictures. It needs a
 // Chromium (CHROMIUM names it, where it is not found) and the packages axe-core and puppeteer-core, as report_check.mjs does.
 import { spawn } from "node:child_process";
-import { createRequire } from "node:module";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 
-const load = createRequire(join(process.cwd(), "package.json"));
-const puppeteer = load("puppeteer-core");
-const axe = readFileSync(load.resolve("axe-core/axe.min.js"), "utf8");
+import { axe, executablePath, puppeteer } from "./browser.mjs";
 
 const MOST_BYTES = 1.5 * 2 ** 20;
 const MOST_FRAME_MS = 60;
 const PATIENCE = 60_000;
 
-const places = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-const executablePath = places.find((place) => place && existsSync(place));
-if (!executablePath) throw new Error("no Chromium is found; name one with CHROMIUM");
 const words = process.argv.slice(2);
 const timed = words.includes("--timed") && words.splice(words.indexOf("--timed"), 1).length > 0;
 const option = (name) => {

@@ -1,8 +1,11 @@
 //! The command line.
 
+#[cfg(feature = "cluster")]
+mod cluster;
 mod deploy;
 mod designs;
 mod parse;
+mod server;
 mod studies;
 mod watch;
 
@@ -17,6 +20,8 @@ use hwasp_report::play;
 
 use crate::caller::Caller;
 
+#[cfg(feature = "cluster")]
+pub(crate) use cluster::{ClusterArgs, ClusterCommand, ConnectArgs, SlurmArgs, StatusArgs, UpArgs, WorkerArgs};
 pub(crate) use deploy::{
     DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployInitArgs, DeployRunArgs, DeployTrialsArgs,
     RigArgs, ShapeArg,
@@ -25,6 +30,7 @@ pub(crate) use deploy::{
 pub(crate) use deploy::{DeployIdentifyArgs, DeployRehearseArgs, DeployReplayArgs};
 pub(crate) use designs::{DesignArgs, ExportArgs, HeldOutArgs, PartsArgs, TolerancesArgs};
 use parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, seconds, side, threads, whole};
+pub(crate) use server::ServerArgs;
 pub(crate) use studies::{CompareArgs, ReproduceArgs};
 pub(crate) use watch::{LOOPBACK, Place, WatchArgs};
 
@@ -124,6 +130,12 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Repeat a toy figure or table of the paper with the authors' settings, their numbers beside ours
     Reproduce(ReproduceArgs),
+    /// Do jobs of trainings on other machines, as long as it runs
+    #[cfg(feature = "cluster")]
+    Worker(WorkerArgs),
+    /// Queue and workers for trainings on many machines: start them, look after them, write scripts for Slurm
+    #[cfg(feature = "cluster")]
+    Cluster(ClusterArgs),
     /// Check an experiment file and report all that is wrong with it at once
     Check(ExperimentArgs),
     /// Print the JSON Schema of experiment files, by which editors complete and check them
@@ -257,6 +269,8 @@ pub(crate) struct TrainArgs {
     /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }
 
 /// Worlds that are nearer to the built robot than the law, held for a step of the controller.
@@ -297,6 +311,8 @@ pub(crate) struct EvalArgs {
     /// Print JSON, for scripts
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }
 
 #[derive(Debug, clap::Args)]

@@ -14,6 +14,7 @@
 mod args;
 mod caller;
 mod commands;
+mod crew;
 mod failure;
 mod given;
 mod grid_progress;
@@ -32,6 +33,7 @@ use hwasp_experiment::Catalogue;
 use args::{Args, Command, GREETING, LogFormat, LogLevel};
 
 pub use caller::Caller;
+pub use crew::Elsewhere;
 pub use commands::check::checked;
 pub use failure::Failure;
 pub use session::{Session, Training, What};
@@ -98,6 +100,10 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         Command::Report(report) => commands::report::run(report, catalogue),
         Command::Compare(compare) => commands::compare::run(compare, catalogue),
         Command::Reproduce(reproduce) => commands::reproduce::run(reproduce, catalogue),
+        #[cfg(feature = "cluster")]
+        Command::Worker(worker) => commands::worker::run(worker, catalogue),
+        #[cfg(feature = "cluster")]
+        Command::Cluster(cluster) => commands::cluster::run(cluster),
         Command::Check(check) => commands::check::run(check, catalogue),
         Command::Schema(schema) => commands::schema::run(schema, catalogue),
         Command::List => commands::list::run(catalogue),

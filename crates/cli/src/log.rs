@@ -10,6 +10,7 @@ use hwasp_settings::text::printable_lines;
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::filter::{LevelFilter, filter_fn};
 use tracing_subscriber::fmt::format::Writer;
+use tracing_subscriber::fmt::time::{FormatTime, SystemTime};
 use tracing_subscriber::fmt::{FmtContext, FormatEvent, FormatFields};
 use tracing_subscriber::layer::{Layer, SubscriberExt};
 use tracing_subscriber::registry::LookupSpan;
@@ -21,6 +22,15 @@ use crate::args::{LogFormat, LogLevel};
 pub(crate) const PROGRESS: &str = "progress";
 
 static FILE: OnceLock<Mutex<File>> = OnceLock::new();
+
+/// Whether lines begin with the time.
+static TIMES: OnceLock<()> = OnceLock::new();
+
+/// From now on lines begin with the time, as those of programs that run for days should.
+#[cfg(feature = "cluster")]
+pub(crate) fn with_times() {
+    let _ = TIMES.set(());
+}
 
 /// To be called once, before anything is told.
 pub(crate) fn begin(format: LogFormat, level: LogLevel, quiet: bool) {
@@ -106,11 +116,15 @@ impl<W: Write> Write for Patient<W> {
     }
 }
 
-/// What a person reads: the words alone.
+/// What a person reads: the words alone, behind the time where it is asked for.
 struct Plain;
 
 impl<S: Subscriber + for<'a> LookupSpan<'a>, N: for<'a> FormatFields<'a> + 'static> FormatEvent<S, N> for Plain {
     fn format_event(&self, context: &FmtContext<'_, S, N>, mut writer: Writer<'_>, event: &Event<'_>) -> fmt::Result {
+        if TIMES.get().is_some() {
+            SystemTime.format_time(&mut writer)?;
+            writer.write_char(' ')?;
+        }
         // Errors begin with the word themselves.
         match *event.metadata().level() {
             Level::WARN => writer.write_str("warning: ")?,

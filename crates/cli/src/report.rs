@@ -1,6 +1,8 @@
 //! What the program says, as text.
 
 pub(crate) mod check;
+#[cfg(feature = "cluster")]
+pub(crate) mod cluster;
 pub(crate) mod design;
 pub(crate) mod parts;
 

@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use hwasp_core::Executor;
 use hwasp_experiment::{Catalogue, Experiment, InitialDesign, Layers, resolve};
 use hwasp_plot::curves_svg;
-use hwasp_runs::{Found, Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard};
+use hwasp_runs::{Found, Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard, saved_provenance};
 use hwasp_training::{
-    Assembly, Checkpoint, Learned, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_from,
+    Assembly, Checkpoint, Learned, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_by,
     warm_start,
 };
 
+use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
-use crate::given::{executor, run_folder, saved_run};
+use crate::given::{run_folder, saved_run};
 use crate::{output, report};
 
 /// A training that is asked for.
@@ -26,6 +26,8 @@ pub struct Training {
     pub what: What,
     /// Threads for episodes; they do not change the result.
     pub threads: NonZeroUsize,
+    /// Workers that run the episodes instead; they do not change it either.
+    pub elsewhere: Option<Elsewhere>,
     /// Time between two checkpoints, at least.
     pub checkpoint_every: Duration,
     /// Whether the learning curve is written for TensorBoard, too.
@@ -58,7 +60,7 @@ pub struct Session {
     folder: RunFolder,
     found: Found,
     board: Option<TensorBoard>,
-    executor: Box<dyn Executor>,
+    crew: Crew,
     resumed: bool,
 }
 
@@ -68,16 +70,22 @@ impl Session {
     /// # Errors
     /// Where something that was asked for is wrong, or the folder cannot be had; nothing has changed then.
     pub fn begin(training: Training, catalogue: &Catalogue) -> Result<Self, Failure> {
-        let executor = executor(training.threads)?;
+        let (threads, elsewhere) = (training.threads, training.elsewhere);
         let keeping = Keeping { checkpoint_every: training.checkpoint_every, ..Keeping::default() };
-        let provenance = |seed| Provenance::new(training.command_line, training.threads.get(), seed);
+        let provenance = |seed| Provenance::new(training.command_line, threads.get(), seed);
         let resumed = matches!(training.what, What::Resume(_));
-        let (assembly, Resumed { folder, found }) = match training.what {
+        let crew = |assembly: &Assembly, began: u64| {
+            // What workers know a training by: its experiment, and when it began.
+            let name = [assembly.experiment().to_toml()?, began.to_string()];
+            Crew::new(threads, elsewhere.as_ref(), &name, catalogue)
+        };
+        let (assembly, crew, Resumed { folder, found }) = match training.what {
             What::Resume(run) => {
                 let assembly = saved_run(run_folder(&run)?, &[], catalogue)?.assembly().clone();
-                let spec = assembly.experiment();
+                let began = saved_provenance(&run).map_err(Failure::input)?.map_or(0, |before| before.started_unix_s);
+                let (crew, spec) = (crew(&assembly, began)?, assembly.experiment());
                 let folder = RunFolder::resume(&run, spec, provenance(spec.seed), keeping).map_err(Failure::input)?;
-                (assembly, folder)
+                (assembly, crew, folder)
             }
             What::Anew { layers, method, learned, out } => {
                 let mut spec = resolve(layers, method.as_deref(), catalogue).map_err(Failure::input)?;
@@ -87,20 +95,22 @@ impl Session {
                     runs => Some(learned_before(runs, &mut spec, &mut assembly, catalogue)?),
                 };
                 let path = out.unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
+                let provenance = provenance(spec.seed);
+                let crew = crew(&assembly, provenance.started_unix_s)?;
                 // A folder that cannot be had is known before the work begins.
-                let folder = RunFolder::create(&path, &spec, &provenance(spec.seed), keeping);
+                let folder = RunFolder::create(&path, &spec, &provenance, keeping);
                 let mut folder = folder.map_err(Failure::input)?;
                 if let Some(start) = &start {
                     // No experiment file says it: from the first moment on it is in the folder.
                     folder.keep(start)?;
                 }
-                (assembly, Resumed { folder, found: Found { checkpoint: start, ..Found::default() } })
+                (assembly, crew, Resumed { folder, found: Found { checkpoint: start, ..Found::default() } })
             }
         };
         let tensorboard = folder.path().join("tensorboard");
         let wanted = training.tensorboard || (resumed && tensorboard.is_dir());
         let board = wanted.then(|| TensorBoard::create(&tensorboard)).transpose()?;
-        Ok(Self { assembly, folder, found, board, executor, resumed })
+        Ok(Self { assembly, folder, found, board, crew, resumed })
     }
 
     /// Its experiment, ready to run.
@@ -135,7 +145,7 @@ impl Session {
             &self.assembly,
             &mut self.folder,
             self.found.checkpoint.as_ref(),
-            &*self.executor,
+            &self.crew,
             &mut observers,
             stop,
         )
@@ -147,13 +157,18 @@ pub(crate) fn into_folder(
     assembly: &Assembly,
     folder: &mut RunFolder,
     from: Option<&Checkpoint>,
-    executor: &dyn Executor,
+    crew: &Crew,
     watching: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<(Trained, Summary), Failure> {
-    let mut observers: Vec<&mut dyn Observer> = vec![folder, watching];
-    let trained = train_from(from, assembly, executor, &mut observers, stop);
+    let (collector, mut settling) = (crew.collector(assembly)?, crew);
+    // What workers keep is not needed any more once the folder has it.
+    let mut observers: Vec<&mut dyn Observer> = vec![folder, watching, &mut settling];
+    let trained = train_by(&*collector, from, assembly, crew.executor(), &mut observers, stop);
     drop(observers);
+    if trained.is_err() {
+        crew.stop();
+    }
     let trained = trained.map_err(|error| ended(error, folder))?;
     if !moved(assembly, from, &trained.params) {
         tracing::warn!("the training changed nothing: {STILL}");
@@ -161,6 +176,7 @@ pub(crate) fn into_folder(
     let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", output::shell(folder.path()));
     let finished = folder.finish(assembly, &trained, &curves_svg);
     let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
+    crew.finish();
     Ok((trained, summary))
 }
 

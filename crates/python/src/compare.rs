@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_core::Threads;
-use hwasp_study::{Comparison, Contender, Grid, Watch, run};
+use hwasp_core::{Serial, Threads};
+use hwasp_study::{Comparison, Contender, Grid, Watch, Work, run};
 use hwasp_training::{Event, TrainError};
 use pyo3::prelude::*;
 
@@ -60,7 +60,7 @@ pub(crate) fn compare(
         let cells = grid.cells(&out, &catalogue()).map_err(Wrong::input)?;
         let first = cells.first().ok_or_else(|| Wrong::input("there is nothing to compare: name methods and seeds"))?;
         let executor = Threads::new(threads).map_err(Wrong::failed)?;
-        let outcome = run(&cells, &executor, &typed, &Quiet, &stopped).map_err(Wrong::input)?;
+        let outcome = run(&cells, &executor, Work { command_line: &typed, watch: &Quiet, trainer: &Serial, stop: &stopped }).map_err(Wrong::input)?;
         let comparison = Comparison::new(&first.experiment(), &outcome, threshold).map_err(Wrong::failed)?;
         comparison.write(&out, &outcome.finished, &first.plot_options()).map_err(Wrong::failed)?;
         if outcome.unfinished() > 0 && !stopped.load(Ordering::Relaxed) {

@@ -89,7 +89,7 @@ pub(crate) fn asked(
     let threads = sound_threads(threads)?;
     let checkpoint_every = Duration::try_from_secs_f64(checkpoint_every)
         .map_err(|_| error::input(format!("checkpoint_every is a time in s, not {checkpoint_every}")))?;
-    Ok(Training { what, threads, checkpoint_every, tensorboard, command_line: command::line(py) })
+    Ok(Training { what, threads, elsewhere: None, checkpoint_every, tensorboard, command_line: command::line(py) })
 }
 
 /// Trains to the end. Whoever watches is called with a dict for each row, on the calling thread; where the answer is `False`

@@ -4,16 +4,14 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use hwasp_core::Serial;
-use hwasp_experiment::{Catalogue, EXPERIMENT, resolve};
+use hwasp_experiment::EXPERIMENT;
 use hwasp_plot::{PlotOptions, curves_svg, plot_options};
 use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{
     Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, Summary, encode, saved_experiment,
 };
-use hwasp_training::collect::ExperimentText;
-use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, moved, train_from};
-use serde::{Deserialize, Serialize};
+use hwasp_training::collect::Trainer;
+use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, moved};
 
 use crate::error::CompareError;
 use crate::failure::{Failure, MissingSeed};
@@ -35,35 +33,8 @@ pub struct Cell {
     pub(crate) assembly: Assembly,
 }
 
-/// A cell as it is asked for: a plain value. Whoever gets it rebuilds the cell, and gives the same bits.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CellRequest {
-    /// The contender.
-    pub label: String,
-    /// Its seed.
-    pub seed: u64,
-    /// Its run folder.
-    pub path: PathBuf,
-    /// Its experiment, every setting resolved.
-    pub experiment: ExperimentText,
-}
-
-impl CellRequest {
-    /// The cell, put together from the problems and learners of a catalogue.
-    ///
-    /// # Errors
-    /// Where the catalogue does not have what the experiment names, or the experiment cannot be put together.
-    pub fn cell(&self, catalogue: &Catalogue) -> Result<Cell, CompareError> {
-        let layers = self.experiment.layers(EXPERIMENT)?;
-        let experiment = resolve(layers, None, catalogue)?;
-        let assembly = Assembly::new(&experiment)
-            .map_err(|source| CompareError::Assemble { label: self.label.clone(), source })?;
-        Ok(Cell { label: self.label.clone(), seed: self.seed, path: self.path.clone(), assembly })
-    }
-}
-
 /// A cell that is done.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CellResult {
     /// The contender.
     pub label: String,
@@ -72,7 +43,6 @@ pub struct CellResult {
     /// Its learning curve.
     pub metrics: MetricsTable,
     /// Whether its training changed no parameter ([`moved`]).
-    #[serde(default)]
     pub unchanged: bool,
 }
 
@@ -102,8 +72,8 @@ pub(crate) enum State {
     Failed(Failure),
 }
 
-/// What became of a cell: a plain value, as its request is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What became of a cell.
+#[derive(Clone, Debug, PartialEq)]
 pub enum CellAnswer {
     /// It is done.
     Finished(Box<CellResult>),
@@ -120,6 +90,8 @@ pub struct Work<'a> {
     pub command_line: &'a [String],
     /// Is told how it gets on.
     pub watch: &'a dyn Watch,
+    /// Who trains.
+    pub trainer: &'a dyn Trainer,
     /// Ends the work when it is set.
     pub stop: &'a AtomicBool,
 }
@@ -145,11 +117,11 @@ impl Cell {
         if self.path.join(SUMMARY).is_file() {
             return Ok(State::Finished);
         }
-        Ok(Failure::read(&self.path, &self.toml()?)?.map_or(State::Open, State::Failed))
+        Ok(Failure::read(&self.path, &self.experiment_text()?)?.map_or(State::Open, State::Failed))
     }
 
-    /// Its experiment, every setting resolved.
-    fn toml(&self) -> Result<String, RunError> {
+    /// Its experiment, every setting resolved, as TOML.
+    pub fn experiment_text(&self) -> Result<String, RunError> {
         self.assembly.experiment().to_toml().map_err(|error| encode(EXPERIMENT, &error))
     }
 
@@ -168,15 +140,6 @@ impl Cell {
     pub(crate) fn stopped(&self) -> MissingSeed {
         let how = if self.is_begun() { "the comparison was stopped on the way" } else { "it was not begun" };
         MissingSeed::unfinished(self.seed, how)
-    }
-
-    /// Asks for it.
-    ///
-    /// # Errors
-    /// Where the experiment cannot be written.
-    pub fn request(&self) -> Result<CellRequest, CompareError> {
-        let experiment = ExperimentText::of(self.assembly.experiment()).map_err(|error| encode(EXPERIMENT, &error))?;
-        Ok(CellRequest { label: self.label.clone(), seed: self.seed, path: self.path.clone(), experiment })
     }
 
     /// Brings it to its end, unless another process is at it. `index` is how `watch` knows it.
@@ -237,7 +200,7 @@ impl Cell {
         let mut told = Told { index, watch: work.watch };
         let mut observers: Vec<&mut dyn Observer> = vec![&mut folder, &mut told];
         let from = found.checkpoint.as_ref();
-        let trained = train_from(from, &self.assembly, &Serial, &mut observers, work.stop);
+        let trained = work.trainer.train(from, &self.assembly, &mut observers, work.stop);
         drop(observers);
         match trained {
             Ok(trained) => {
@@ -253,7 +216,7 @@ impl Cell {
             Err(error) => {
                 work.watch.failed(index, &error);
                 let reason = error.to_string();
-                Ok(CellAnswer::Missing(match Failure::of(&error, &self.toml()?) {
+                Ok(CellAnswer::Missing(match Failure::of(&error, &self.experiment_text()?) {
                     Some(failure) => {
                         failure.write(&self.path)?;
                         MissingSeed::failed(self.seed, &reason)

@@ -25,10 +25,10 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// Of an experiment, where its error is one that comes again; none where it was asked to stop, or could not write.
+    /// Of an experiment, where its error is one that comes again; none where it was asked to stop, could not write, or nobody answered.
     pub(crate) fn of(error: &TrainError, experiment: &str) -> Option<Self> {
         match error {
-            TrainError::Interrupted { .. } | TrainError::Observer(_) => None,
+            TrainError::Interrupted { .. } | TrainError::Observer(_) | TrainError::Collect(_) => None,
             _ => Some(Self {
                 reason: error.to_string(),
                 experiment: experiment.to_owned(),

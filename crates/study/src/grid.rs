@@ -1,14 +1,13 @@
 //! Grids of methods and seeds.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use hwasp_core::Executor;
 use hwasp_experiment::{Catalogue, EXPERIMENT, Layers, resolve};
 use hwasp_runs::RunFolder;
 use hwasp_training::Assembly;
 
-use crate::cell::{CELLS, Cell, CellAnswer, State, Watch, Work};
+use crate::cell::{CELLS, Cell, CellAnswer, State, Work};
 use crate::contender::Contender;
 use crate::error::CompareError;
 use crate::failure::MissingSeed;
@@ -81,28 +80,25 @@ fn others(cells: &[Cell]) -> Vec<String> {
     names
 }
 
-/// Runs what is not finished yet, cells in parallel, each on one thread. A cell that failed is remembered and not tried again.
+/// Runs what is not finished yet: as many cells at once as the executor has workers. A cell that failed is remembered and not tried again.
 /// A cell that another process trains is waited for, after all that nobody trains. When `stop` is set, cells under way are
 /// left as they are, to be resumed.
 pub fn run(
     cells: &[Cell],
     executor: &dyn Executor,
-    command_line: &[String],
-    watch: &dyn Watch,
-    stop: &AtomicBool,
+    work: Work<'_>,
 ) -> Result<Outcome, CompareError> {
     let states = cells.iter().map(Cell::state).collect::<Result<Vec<_>, _>>()?;
     let known = cells.iter().zip(&states).map(|(cell, state)| {
         let label = format!("{} seed {}", cell.label, cell.seed);
         (label, cell.assembly.experiment().train.env_steps, !matches!(state, State::Open))
     });
-    watch.grid(&known.collect::<Vec<_>>());
+    work.watch.grid(&known.collect::<Vec<_>>());
     for (i, state) in states.iter().enumerate() {
         if let State::Failed(failure) = state {
-            watch.failed_before(i, &failure.reason);
+            work.watch.failed_before(i, &failure.reason);
         }
     }
-    let work = Work { command_line, watch, stop };
     let mut worked =
         executor.map(cells.len(), |i| cells[i].work(i, work)).into_iter().collect::<Result<Vec<_>, _>>()?;
     let held: Vec<(usize, String)> = worked

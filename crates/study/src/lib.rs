@@ -19,7 +19,7 @@ mod reproduce;
 mod saved;
 mod table;
 
-pub use cell::{Cell, CellAnswer, CellRequest, CellResult, Watch, Work};
+pub use cell::{Cell, CellAnswer, CellResult, Watch, Work};
 pub use comparison::Comparison;
 pub use contender::Contender;
 pub use error::CompareError;

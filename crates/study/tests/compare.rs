@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use hwasp_core::Threads;
-use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome, Watch};
+use hwasp_core::{Serial, Threads};
+use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome, Watch, Work};
 use hwasp_training::{Event, TrainError};
 
 fn grid(methods: &[&str], clip: &str) -> Grid {
@@ -54,9 +54,7 @@ fn run(grid: &Grid, folder: &Path, watch: &Counter) -> Result<Outcome, CompareEr
     study::run(
         &grid.cells(folder, hwasp_testing::catalogue())?,
         &Threads::new(2).unwrap(),
-        &["hwasp".into()],
-        watch,
-        &watch.stop,
+        Work { command_line: &["hwasp".into()], watch, trainer: &Serial, stop: &watch.stop },
     )
 }
 
@@ -104,31 +102,6 @@ fn a_killed_comparison_goes_on_and_ends_with_the_same_figures() {
     let third = Counter::default();
     assert_eq!(figures(&run(&grid, &folder, &third).unwrap()), whole);
     assert_eq!(*third.trained.lock().unwrap(), 0);
-}
-
-/// A cell was an assembly and a folder, so that only a thread of the same process could train it.
-#[test]
-fn a_cell_can_be_asked_for_and_answered_as_text() {
-    use hwasp_study::{CellAnswer, CellRequest, Work};
-
-    let grid = grid(&["hwasp", "cmaes"], "0.2");
-    let whole = run(&grid, &empty("asked-whole"), &Counter::default()).unwrap();
-    let watch = Counter::default();
-    let (command_line, stop) = (["hwasp".to_owned()], AtomicBool::new(false));
-    for (i, cell) in grid.cells(&empty("asked"), hwasp_testing::catalogue()).unwrap().iter().enumerate() {
-        let request = serde_json::to_string(&cell.request().unwrap()).unwrap();
-        let request: CellRequest = serde_json::from_str(&request).unwrap();
-        let there = request.cell(hwasp_testing::catalogue()).unwrap();
-        let answer = there.work(i, Work { command_line: &command_line, watch: &watch, stop: &stop }).unwrap();
-        let answer: CellAnswer = serde_json::from_str(&serde_json::to_string(&answer).unwrap()).unwrap();
-        let CellAnswer::Finished(result) = answer else { panic!("{answer:?}") };
-        let here = &whole.finished[i];
-        assert_eq!((&result.label, &result.summary.evaluation), (&here.label, &here.summary.evaluation));
-        assert_eq!(
-            (&result.summary.design, result.metrics.rows.len()),
-            (&here.summary.design, here.metrics.rows.len())
-        );
-    }
 }
 
 #[test]

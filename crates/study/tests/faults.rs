@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hwasp_core::Threads;
-use hwasp_study::{self as study, CompareError, Comparison, Contender, FAILURE, Grid, Outcome, SavedComparison, Watch};
+use hwasp_core::{Serial, Threads};
+use hwasp_study::{self as study, CompareError, Comparison, Contender, FAILURE, Grid, Outcome, SavedComparison, Watch, Work};
 use hwasp_testing::{catalogue, empty, layers};
 use hwasp_training::{Event, TrainError};
 
@@ -68,7 +68,8 @@ impl Watch for Told {
 
 fn run(grid: &Grid, folder: &Path, told: &Told) -> Outcome {
     let cells = grid.cells(folder, catalogue()).unwrap();
-    study::run(&cells, &Threads::new(2).unwrap(), &["hwasp".into()], told, &told.stop).unwrap()
+    let work = Work { command_line: &["hwasp".into()], watch: told, trainer: &Serial, stop: &told.stop };
+    study::run(&cells, &Threads::new(2).unwrap(), work).unwrap()
 }
 
 fn write(grid: &Grid, folder: &Path, outcome: &Outcome) -> Comparison {

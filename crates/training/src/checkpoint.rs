@@ -1,9 +1,10 @@
 //! All that a training needs to go on to the bits of one that was never interrupted.
 
 use hwasp_algos::Archive;
+use serde::{Deserialize, Serialize};
 
 /// Where a training stands.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// Iterations done.
     pub iteration: u64,

@@ -63,6 +63,9 @@ pub enum TrainError {
     /// Whoever was asked for episodes has not answered.
     #[error(transparent)]
     Collect(CollectError),
+    /// It failed where it was asked for, in these words, and would again.
+    #[error("{0}")]
+    Elsewhere(String),
     /// Someone asked it to stop. Its observer has a checkpoint of all that was done.
     #[error("stopped after {env_steps} of {budget} steps")]
     Interrupted {

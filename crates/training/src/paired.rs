@@ -3,7 +3,7 @@
 //! Episodes of one index begin alike and meet the same noise whatever acts in them (common random numbers), so that the
 //! difference of two of them varies far less than either.
 
-use hwasp_core::{EnvSpec, EpisodeResult, Executor, Stream};
+use hwasp_core::{EnvSpec, EpisodeResult, Stream};
 use rand::SeedableRng;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,6 @@ use crate::collect::{Collector, EpisodeAnswer, ExperimentText, Stage};
 use crate::evaluate::rollouts;
 use crate::evaluation::{EvaluateError, Evaluation, MeanInterval, mean_interval};
 use crate::stats::StatsError;
-use crate::worker::LocalCollector;
 
 /// What changed between two evaluations on the same episodes: means of the differences, episode by episode, with their 95 %
 /// bootstrap intervals.
@@ -35,7 +34,7 @@ pub struct Reference<'a> {
     experiment: ExperimentText,
     /// Episodes and the root seed of their starts.
     asked: (u64, u64),
-    collector: Box<dyn Collector + 'a>,
+    collector: &'a dyn Collector,
     /// What it is worth.
     pub evaluation: Evaluation,
     trials: Vec<Option<Trial>>,
@@ -47,20 +46,9 @@ fn env(assembly: &Assembly) -> &EnvSpec {
 }
 
 impl<'a> Reference<'a> {
-    /// The controller in `params` on the hardware of `design`, SI.
+    /// The controller in `params` on the hardware of `design`, SI, in episodes that `collector` gives.
     pub fn new(
-        assembly: &'a Assembly,
-        design: &[f64],
-        params: &[f32],
-        asked: (u64, u64),
-        executor: &'a dyn Executor,
-    ) -> Result<Self, EvaluateError> {
-        Self::by(Box::new(LocalCollector::new(assembly, executor)?), assembly, design, params, asked)
-    }
-
-    /// The same, of episodes that `collector` gives.
-    pub fn by(
-        collector: Box<dyn Collector + 'a>,
+        collector: &'a dyn Collector,
         assembly: &'a Assembly,
         design: &[f64],
         params: &[f32],
@@ -68,7 +56,7 @@ impl<'a> Reference<'a> {
     ) -> Result<Self, EvaluateError> {
         let experiment = ExperimentText::of(assembly.experiment())?;
         let stage = Stage::Deployment(design.to_vec());
-        let results = rollouts(&*collector, assembly, experiment.clone(), stage, params, asked)?;
+        let results = rollouts(collector, assembly, experiment.clone(), stage, params, asked)?;
         let (evaluation, trials) = (Evaluation::new(&results, env(assembly), asked)?, trials(&results));
         Ok(Self { assembly, experiment, asked, collector, evaluation, trials })
     }
@@ -77,7 +65,7 @@ impl<'a> Reference<'a> {
     pub fn against(&self, design: &[f64], params: &[f32]) -> Result<(Evaluation, Change), EvaluateError> {
         let stage = Stage::Deployment(design.to_vec());
         let experiment = self.experiment.clone();
-        let results = rollouts(&*self.collector, self.assembly, experiment, stage, params, self.asked)?;
+        let results = rollouts(self.collector, self.assembly, experiment, stage, params, self.asked)?;
         let change = Change::between(&self.trials, &trials(&results), self.asked.1)?;
         Ok((Evaluation::new(&results, env(self.assembly), self.asked)?, change))
     }

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_algos::{Archive, Metrics};
-use hwasp_core::{Batch, Executor};
+use hwasp_core::{Batch, Executor, bits};
+use serde::{Deserialize, Serialize};
 
 use crate::assemble::Assembly;
 use crate::checkpoint::Checkpoint;
@@ -18,9 +19,10 @@ use crate::polish::{learn, params_at};
 use crate::worker::LocalCollector;
 
 /// What a training gave.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trained {
     /// The policy's parameters.
+    #[serde(with = "bits")]
     pub params: Vec<f32>,
     /// Iterations done; generations of a search.
     pub iterations: u64,
@@ -30,8 +32,10 @@ pub struct Trained {
     pub wall_s: f64,
     /// The mean discounted return of the training episodes over the last [`TRAILING`](crate::TRAILING) iterations in which some
     /// came to their end; NaN where none ever did.
+    #[serde(with = "bits")]
     pub training_discounted_return: f64,
     /// The same, undiscounted.
+    #[serde(with = "bits")]
     pub training_return: f64,
     /// Candidates of a search that failed and ranked last; none where the method does not search.
     pub failed_candidates: Option<u64>,

@@ -1,5 +1,6 @@
 //! Whoever answers requests: it puts experiments together again from their texts, and keeps the last of them.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_algos::{LearnError, StateError};
@@ -8,6 +9,7 @@ use hwasp_experiment::{Catalogue, resolve};
 use hwasp_problem::World;
 
 use crate::assemble::{AssembleError, Assembly};
+use crate::checkpoint::Checkpoint;
 use crate::collect::{
     Answer, CandidateAnswer, CandidateFailure, CandidateRequest, CollectError, Collector, EpisodeAnswer,
     EpisodesRequest, ExperimentText, Request, Stage, Watch,
@@ -16,6 +18,7 @@ use crate::error::TrainError;
 use crate::gradient::gradient;
 use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer, ObserverError};
+use crate::train::{Trained, train_from};
 
 /// Experiments, and samplers of one experiment, that are kept for the next request.
 const KEPT: usize = 4;
@@ -35,16 +38,32 @@ impl Worker {
         Self { catalogue, experiments: Mutex::new(Vec::new()) }
     }
 
-    /// Answers a request on one thread.
+    /// Answers a request on one thread. `watch` is of use to the training of a candidate.
     ///
     /// # Errors
-    /// Where the experiment cannot be set up here, or an episode gave a number that is none.
-    pub fn answer(&self, request: &Request) -> Result<Answer, CollectError> {
+    /// Where the experiment cannot be set up here, or an episode gave a number that is none;
+    /// [`CollectError::Interrupted`] where `watch` asked for it.
+    pub fn answer(&self, request: &Request, watch: &dyn Watch) -> Result<Answer, CollectError> {
         Ok(match request {
             Request::Rows(request) => Answer::Rows(self.rows(request, &Serial)?),
             Request::Results(request) => Answer::Results(self.results(request, &Serial)?),
-            Request::Candidate(request) => Answer::Candidate(self.candidate(request, &())?),
+            Request::Candidate(request) => Answer::Candidate(self.candidate(request, watch)?),
         })
+    }
+
+    /// Trains an experiment on one thread, as [`train_from`](crate::train_from) does.
+    ///
+    /// # Errors
+    /// [`TrainError::Assemble`] where the experiment cannot be set up here; otherwise as those of [`train`](crate::train).
+    pub fn train(
+        &self,
+        experiment: &ExperimentText,
+        from: Option<&Checkpoint>,
+        observer: &mut dyn Observer,
+        stop: &AtomicBool,
+    ) -> Result<Trained, TrainError> {
+        let prepared = self.prepared(experiment)?;
+        train_from(from, &prepared.assembly, &Serial, observer, stop)
     }
 
     fn rows(&self, request: &EpisodesRequest, executor: &dyn Executor) -> Result<Batch, CollectError> {

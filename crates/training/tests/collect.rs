@@ -27,7 +27,7 @@ struct Elsewhere(Arc<dyn Executor>);
 
 impl Elsewhere {
     fn ask(request: &Request) -> Result<Answer, CollectError> {
-        sent(&Worker::new(catalogue().clone()).answer(&sent(request)))
+        sent(&Worker::new(catalogue().clone()).answer(&sent(request), &()))
     }
 }
 
@@ -234,7 +234,7 @@ fn what_a_worker_cannot_set_up_is_an_answer() {
     let file = wrong(EpisodesRequest { experiment: text, ..request.clone() });
     assert!(file.contains("the requested experiment"), "{file}");
     let empty = Catalogue::default().with_learner(PpoKind).unwrap();
-    let unknown = Worker::new(empty).answer(&Request::Results(request)).unwrap_err();
+    let unknown = Worker::new(empty).answer(&Request::Results(request), &()).unwrap_err();
     assert!(unknown.to_string().contains("reach"), "{unknown}");
 }
 

@@ -9,7 +9,7 @@ use hwasp_core::{Executor, Serial};
 use hwasp_experiment::{Experiment, Place};
 use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
-use hwasp_training::{Assembly, evaluate, evaluate_in, params_at, train, train_from};
+use hwasp_training::{LocalCollector, Assembly, evaluate, evaluate_in, params_at, train, train_from};
 use hwasp_workshop::parts::{
     PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, Workshop, snap,
 };
@@ -53,7 +53,8 @@ fn snapped(assembly: &Assembly, params: &[f32]) -> Snapped {
 
 fn list(assembly: &Assembly, params: &[f32], executor: &dyn Executor) -> PartsList {
     let snapped = snapped(assembly, params);
-    let worth = snapped.judge(assembly, params, ASKED, executor).unwrap().worth().clone();
+    let collector = LocalCollector::new(assembly, executor).unwrap();
+    let worth = snapped.judge(assembly, params, ASKED, &collector).unwrap().worth().clone();
     snapped.list(assembly, worth)
 }
 
@@ -114,7 +115,8 @@ fn a_controller_is_trained_further_on_parts() {
     assert_eq!(tuning.assembly.policy.controller_params(&start), assembly.policy.controller_params(&params));
     assert_eq!(tuning.assembly.policy.design(&start), snapped.built);
     assert_eq!(SavedRun::open(&path, hwasp_testing::catalogue()).unwrap().params().unwrap(), start);
-    let judge = snapped.judge(&assembly, &params, ASKED, &Serial).unwrap();
+    let collector = LocalCollector::new(&assembly, &Serial).unwrap();
+    let judge = snapped.judge(&assembly, &params, ASKED, &collector).unwrap();
     assert_eq!(judge.worth().snapped, evaluate(&tuning.assembly, &start, ASKED, &Serial).unwrap());
 
     // Interrupted before the first iteration, it goes on from the same.

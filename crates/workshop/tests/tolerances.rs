@@ -5,7 +5,7 @@
 use hwasp_core::{Executor, Serial};
 use hwasp_plot::render_png;
 use hwasp_testing::{empty, executor};
-use hwasp_training::{Assembly, MeanInterval, evaluate_in};
+use hwasp_training::{LocalCollector, Assembly, MeanInterval, evaluate_in};
 use hwasp_workshop::tolerances::{ManufacturingError, Sensitivities, errors_of, tolerances};
 
 const ASKED: (u64, u64) = (12, 4);
@@ -22,7 +22,8 @@ fn found(assembly: &Assembly, params: &[f32], given: &[&str], executor: &dyn Exe
     let given: Vec<String> = given.iter().map(|&given| given.to_owned()).collect();
     let errors = errors_of(assembly, params, &given).unwrap();
     let mut told = Vec::new();
-    let found = tolerances(assembly, params, &errors, ASKED, executor, &mut |done, all| told.push((done, all)));
+    let collector = LocalCollector::new(assembly, executor).unwrap();
+    let found = tolerances(assembly, params, &errors, ASKED, &collector, &mut |done, all| told.push((done, all)));
     let all = 1 + 2 * errors.len();
     assert_eq!(told, (1..=all).map(|done| (done, all)).collect::<Vec<_>>());
     found.unwrap()
@@ -89,7 +90,8 @@ fn errors_leave_the_limits_as_they_are_told() {
     let (built, (lo, hi)) = (assembly.built(&params), assembly.policy.space().bounds(0));
     let size = 0.05 * (hi - lo);
     let errors = vec![ManufacturingError { size, text: "all".into() }; 3];
-    let found = tolerances(&assembly, &params, &errors, (2, 1), &Serial, &mut |_, _| ()).unwrap();
+    let collector = LocalCollector::new(&assembly, &Serial).unwrap();
+    let found = tolerances(&assembly, &params, &errors, (2, 1), &collector, &mut |_, _| ()).unwrap();
     for (i, built) in built.iter().enumerate() {
         let parameter = found.parameters.iter().find(|p| p.name == format!("stiffness[{i}]")).unwrap();
         assert_eq!((parameter.minus.value, parameter.plus.value), (built - size, built + size));

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use hwasp_experiment::TrainSettings;
 use hwasp_export::{Kind, MOST_SAMPLES};
 
+use super::ServerArgs;
 use super::parse::{LAST_SEED, MOST_EPISODES, MOST_STEPS, path, threads, whole};
 
 #[derive(Debug, clap::Args)]
@@ -112,6 +113,8 @@ pub(crate) struct PartsArgs {
     /// The folder of the list; its files are replaced [default: build/ in the run folder]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }
 
 #[derive(Debug, clap::Args)]
@@ -128,6 +131,8 @@ pub(crate) struct TolerancesArgs {
     /// The folder of figures and pictures; files there are replaced [default: build/ in the run folder]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }
 
 /// Held-out episodes.

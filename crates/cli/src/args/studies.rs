@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use super::ServerArgs;
 use super::parse::{LAST_SEED, MOST_SEEDS, MOST_STEPS, finite, path, threads, whole};
 
 #[derive(Debug, clap::Args)]
@@ -29,7 +30,7 @@ pub(crate) struct CompareArgs {
     /// The training return whose steps are counted [default: nine tenths of the way from the worst to the best]
     #[arg(long, allow_negative_numbers = true, value_parser = finite)]
     pub(crate) threshold: Option<f64>,
-    /// Cells trained at once; they do not change the result [default: the processors there are]
+    /// Cells trained at once on this machine; they do not change the result [default: the processors there are]
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The folder; where it holds a part of this comparison, that is continued [default: runs/compare-EXPERIMENT]
@@ -38,6 +39,8 @@ pub(crate) struct CompareArgs {
     /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }
 
 #[derive(Debug, clap::Args)]
@@ -47,10 +50,12 @@ pub(crate) struct ReproduceArgs {
     /// Two seeds at a fifth of the steps: a minute or two, and the same shape
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Cells trained at once; they do not change the result [default: the processors there are]
+    /// Cells trained at once on this machine; they do not change the result [default: the processors there are]
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The folder; a part that is there is continued [default: runs/reproduce-FIGURE]
     #[arg(long, value_name = "FOLDER", value_parser = path())]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) server: ServerArgs,
 }

@@ -7,15 +7,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::Threads;
 use hwasp_runs::RunError;
-use hwasp_study::{self as study, CompareError, Comparison, Contender, Grid, Outcome};
+use hwasp_study::{self as study, Cell, CompareError, Comparison, Contender, Grid, Outcome, Work};
 use hwasp_training::STILL;
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
+use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
 use crate::output;
 
+/// Cells that wait for workers at once, at most.
+const MOST_AT_ONCE: usize = 512;
 /// What is compared where nobody says what.
 const METHODS: &str = "hwasp,minimal,cmaes,ars,cmaes-rl,ars-rl,bo-rl,random-rl,fixed";
 /// The same where nothing is designed: the other methods would train the same, or have nothing to search.
@@ -34,11 +37,25 @@ pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failu
     let name = Path::new(&args.experiment).file_stem().map_or("experiment".into(), |stem| stem.to_string_lossy());
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: args.first_seed..args.first_seed + args.seeds };
-    let ran = run_grid(&grid, catalogue, &folder, args.threads, args.threshold, args.quiet, &*stop_on_signal()?)?;
+    let stop = stop_on_signal()?;
+    let how = How { threads: args.threads, elsewhere: Elsewhere::asked(&args.server), quiet: args.quiet, stop: &stop };
+    let ran = run_grid(&grid, catalogue, &folder, args.threshold, &how)?;
     if !args.quiet {
         output::print(&ran.text)?;
     }
     ran.failed.map_or(Ok(()), Err)
+}
+
+/// How a grid is run.
+pub(super) struct How<'a> {
+    /// Cells at once on this machine; all that it has where nobody says.
+    pub(super) threads: Option<NonZeroUsize>,
+    /// Workers that train them instead.
+    pub(super) elsewhere: Option<Elsewhere>,
+    /// Whether nothing but errors is told.
+    pub(super) quiet: bool,
+    /// Ends it.
+    pub(super) stop: &'a AtomicBool,
 }
 
 /// A grid that came to its end.
@@ -59,22 +76,32 @@ pub(super) fn run_grid(
     grid: &Grid,
     catalogue: &Catalogue,
     folder: &Path,
-    threads: Option<NonZeroUsize>,
     threshold: Option<f64>,
-    quiet: bool,
-    stop: &AtomicBool,
+    how: &How<'_>,
 ) -> Result<Ran, Failure> {
+    let (quiet, stop) = (how.quiet, how.stop);
     // Everything that was asked for is checked before the first cell begins.
     let cells = grid.cells(folder, catalogue).map_err(Failure::input)?;
     let first = cells.first().ok_or_else(|| Failure::input("there is nothing to compare"))?;
-    let threads = threads.map_or_else(default_threads, NonZeroUsize::get);
+    let crew = Crew::new(NonZeroUsize::MIN, how.elsewhere.as_ref(), &names(&cells, folder)?, catalogue)?;
+    // Workers may come at any time: all cells wait for them at once.
+    let all = if crew.is_elsewhere() { cells.len().min(MOST_AT_ONCE) } else { default_threads() };
+    let threads = how.threads.filter(|_| !crew.is_elsewhere()).map_or(all, NonZeroUsize::get);
     let progress = GridProgress::new(quiet, threads);
     let executor = Threads::new(threads)?;
-    let outcome = study::run(&cells, &executor, &typed(), &progress, stop).map_err(|error| match error {
+    let work = Work { command_line: &typed(), watch: &progress, trainer: crew.trainer(), stop };
+    let ran = study::run(&cells, &executor, work);
+    if stop.load(Ordering::Relaxed) || ran.is_err() {
+        crew.stop();
+    }
+    let outcome = ran.map_err(|error| match error {
         CompareError::Other { .. } | CompareError::Run(RunError::Edited { .. }) => Failure::input(error),
         _ => error.into(),
     })?;
     progress.finish();
+    if outcome.unfinished() == 0 {
+        crew.finish();
+    }
     let comparison = Comparison::new(&first.experiment(), &outcome, threshold)?;
     if let Err(unwritten) = comparison.write(folder, &outcome.finished, &first.plot_options()) {
         // What was found is told even if a disk is full by now.
@@ -107,6 +134,12 @@ pub(super) fn run_grid(
         ))
     });
     Ok(Ran { text, outcome, failed })
+}
+
+/// What workers know a comparison by: its folder, and what is trained in it.
+fn names(cells: &[Cell], folder: &Path) -> Result<Vec<String>, Failure> {
+    let texts = cells.iter().map(|cell| cell.experiment_text()).collect::<Result<Vec<_>, _>>()?;
+    Ok([vec![std::path::absolute(folder)?.display().to_string()], texts].concat())
 }
 
 /// All that the machine has: cells do not wait for each other.

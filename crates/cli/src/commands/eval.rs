@@ -1,11 +1,12 @@
 //! `hwasp eval`.
 
 use hwasp_experiment::Catalogue;
-use hwasp_training::{EvaluateError, Evaluation, evaluate, evaluate_native};
+use hwasp_training::{EvaluateError, Evaluation, evaluate_by, evaluate_native_by};
 use serde::Serialize;
 
-use super::{executor, saved_run, stand_in};
+use super::{saved_run, stand_in};
 use crate::args::EvalArgs;
+use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
 use crate::{output, report};
 
@@ -22,13 +23,15 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
     let saved = saved_run(&args.run, &args.set, catalogue)?;
     let params = saved.params().map_err(Failure::input)?;
     let asked = args.held_out.asked(&saved.assembly().experiment().train);
-    let executor = executor(args.held_out.threads)?;
+    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let collector = crew.collector(saved.assembly())?;
     let nearer = stand_in(&args.nearer, saved.assembly())?;
     let evaluation = if nearer.is_some() {
-        evaluate_native(saved.assembly(), &params, asked, &*executor)
+        evaluate_native_by(&*collector, saved.assembly(), &params, asked)
     } else {
-        evaluate(saved.assembly(), &params, asked, &*executor)
+        evaluate_by(&*collector, saved.assembly(), &params, asked)
     };
+    crew.finish();
     let evaluation = evaluation.map_err(|error| match error {
         EvaluateError::Assemble(error) => Failure::input(error),
         error => error.into(),

@@ -3,6 +3,8 @@
 mod begin;
 mod changes;
 pub(crate) mod check;
+#[cfg(feature = "cluster")]
+pub(crate) mod cluster;
 pub(crate) mod compare;
 pub(crate) mod deploy;
 pub(crate) mod design;
@@ -22,6 +24,8 @@ pub(crate) mod schema;
 pub(crate) mod tolerances;
 pub(crate) mod train;
 pub(crate) mod watch;
+#[cfg(feature = "cluster")]
+pub(crate) mod worker;
 
 use std::io;
 use std::path::Path;

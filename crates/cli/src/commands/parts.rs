@@ -3,15 +3,15 @@
 use hwasp_experiment::Catalogue;
 use std::path::Path;
 
-use hwasp_core::Executor;
 use hwasp_runs::{Provenance, RunError};
 use hwasp_workshop::parts::{
     BUILD, Judge, PARTS, PartsError, PartsWorth, SHEET, SpringCatalogue, TUNED, Tuning, TuningFolder, Workshop, snap,
 };
 use hwasp_workshop::writable;
 
-use super::{executor, saved_run, stop_on_signal, typed};
+use super::{saved_run, stop_on_signal, typed};
 use crate::args::PartsArgs;
+use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::session::into_folder;
@@ -39,13 +39,15 @@ pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure
     let tuning = tuning.map(|tuning| Ok((tuning.folder(&path, provenance)?, tuning))).transpose();
     let tuning = tuning.map_err(|error: RunError| Failure::input(error))?;
 
-    let executor = executor(args.held_out.threads)?;
+    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let collector = crew.collector(assembly)?;
     output::remark(&format!("simulating the hand as trained and on its parts, {} episodes each", asked.0));
-    let judge = snapped.judge(assembly, &params, asked, &*executor).map_err(failure)?;
+    let judge = snapped.judge(assembly, &params, asked, &*collector).map_err(failure)?;
     let worth = match tuning {
         None => judge.worth().clone(),
-        Some((there, tuning)) => tuned(judge, there, &tuning, &path, &*executor)?,
+        Some((there, tuning)) => tuned(judge, there, &tuning, &path, &crew)?,
     };
+    crew.finish();
     let list = snapped.list(assembly, worth);
     // What was found is told even if a disk is full by now.
     output::print(&report::parts::parts(&list))?;
@@ -60,7 +62,7 @@ fn tuned(
     there: TuningFolder,
     tuning: &Tuning,
     path: &Path,
-    executor: &dyn Executor,
+    crew: &Crew,
 ) -> Result<PartsWorth, Failure> {
     let spec = tuning.assembly.experiment();
     let params = match there {
@@ -73,7 +75,7 @@ fn tuned(
             output::remark(&report::beginning(spec, path, false, None));
             let stop = stop_on_signal()?;
             let mut progress = Progress::new(&tuning.assembly);
-            let ended = into_folder(&tuning.assembly, &mut folder, Some(&from), executor, &mut progress, &stop);
+            let ended = into_folder(&tuning.assembly, &mut folder, Some(&from), crew, &mut progress, &stop);
             progress.finish();
             let (trained, _) = ended?;
             folder.remove_checkpoints()?;

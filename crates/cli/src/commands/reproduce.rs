@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use hwasp_study::{FIGURES, PaperFigure};
 
-use super::compare::run_grid;
+use super::compare::{How, run_grid};
 use super::stop_on_signal;
 use crate::args::ReproduceArgs;
+use crate::crew::Elsewhere;
 use crate::failure::Failure;
 use crate::output;
 
@@ -23,11 +24,12 @@ pub(crate) fn run(args: &ReproduceArgs, catalogue: &Catalogue) -> Result<(), Fai
         args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("reproduce-{}{quick}", figure.name)));
     output::remark(&format!("{}: {}", figure.name, figure.about));
     let stop = stop_on_signal()?;
+    let how = How { threads: args.threads, elsewhere: Elsewhere::asked(&args.server), quiet: false, stop: &stop };
     let mut failed = None;
     for experiment in figure.experiments {
         let grid = figure.grid(experiment, args.quick, catalogue).map_err(Failure::input)?;
         let folder = folder.join(experiment.replace('/', "-"));
-        let ran = run_grid(&grid, catalogue, &folder, args.threads, None, false, &stop)?;
+        let ran = run_grid(&grid, catalogue, &folder, None, &how)?;
         output::print(&ran.text)?;
         // Trainings that failed keep nobody from the other experiments.
         failed = failed.or(ran.failed);

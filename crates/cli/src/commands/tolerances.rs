@@ -5,8 +5,9 @@ use hwasp_training::EvaluateError;
 use hwasp_workshop::tolerances::{PICTURES, TOLERANCES, errors_of, tolerances};
 use hwasp_workshop::writable;
 
-use super::{executor, saved_run};
+use super::saved_run;
 use crate::args::TolerancesArgs;
+use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
 use crate::progress::Counter;
 use crate::{output, report};
@@ -24,10 +25,12 @@ pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Fa
     let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
     // What cannot be written is known before the work begins.
     writable(&folder)?;
-    let executor = executor(args.held_out.threads)?;
+    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let collector = crew.collector(assembly)?;
     let mut counter = Counter::new("designs simulated");
-    let found = tolerances(assembly, &params, &errors, asked, &*executor, &mut |done, all| counter.tell(done, all));
+    let found = tolerances(assembly, &params, &errors, asked, &*collector, &mut |done, all| counter.tell(done, all));
     counter.finish();
+    crew.finish();
     let found = found.map_err(|error| match error {
         EvaluateError::Assemble(error) => Failure::input(error),
         error => error.into(),

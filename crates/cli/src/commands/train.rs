@@ -5,6 +5,7 @@ use hwasp_training::Observer;
 
 use super::{layers, stop_on_signal, typed, watch};
 use crate::args::TrainArgs;
+use crate::crew::Elsewhere;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::session::{Session, Training, What};
@@ -63,6 +64,7 @@ fn asked(args: &TrainArgs, catalogue: &Catalogue) -> Result<Training, Failure> {
     Ok(Training {
         what,
         threads: args.threads,
+        elsewhere: Elsewhere::asked(&args.server),
         checkpoint_every: args.checkpoint_every,
         tensorboard: args.tensorboard,
         command_line: typed(),

@@ -50,3 +50,11 @@ pub use shape::Shape;
 pub use simulation::{Simulation, Wrench};
 pub use spec::{Element, FieldPath, SettableField, Spec, SpecError, settable_fields};
 pub use view::View;
+
+/// The engine that is linked, and its version, as `MuJoCo 3.17.0`.
+#[allow(unsafe_code)]
+pub fn version() -> String {
+    // SAFETY: it takes nothing and returns a constant text of the library, which ends with a zero byte.
+    let text = unsafe { std::ffi::CStr::from_ptr(mujoco_rs::mujoco_c::mj_versionString()) };
+    format!("MuJoCo {}", text.to_string_lossy())
+}

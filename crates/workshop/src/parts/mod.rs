@@ -17,12 +17,11 @@ use std::path::Path;
 
 use crate::design::hand_of;
 use crate::folder::writable;
-use hwasp_core::Executor;
 pub use hwasp_fabrication::{Finding, SeatedSpring, Verdict, Workshop};
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{RunError, encode, io_error};
 use hwasp_tasks::hand::{DESIGN_LEN, HandDescription};
-use hwasp_training::{AssembleError, Assembly, EvaluateError, Reference, TrainError};
+use hwasp_training::{AssembleError, Assembly, Collector, EvaluateError, Reference, TrainError};
 use thiserror::Error;
 
 pub use catalogue::{BUILT_IN, CatalogueFault, CatalogueSpring, SpringCatalogue, SpringCatalogueError};
@@ -131,9 +130,9 @@ impl Snapped {
         assembly: &'a Assembly,
         params: &[f32],
         asked: (u64, u64),
-        executor: &'a dyn Executor,
+        collector: &'a dyn Collector,
     ) -> Result<Judge<'a>, PartsError> {
-        let reference = Reference::new(assembly, &self.trained, params, asked, executor)?;
+        let reference = Reference::new(collector, assembly, &self.trained, params, asked)?;
         let (snapped, snapping) = reference.against(&self.built, params)?;
         let worth = PartsWorth { trained: reference.evaluation.clone(), snapped, snapping, tuned: None };
         Ok(Judge { reference, built: self.built, worth })

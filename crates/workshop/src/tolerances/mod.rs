@@ -6,11 +6,10 @@ mod list;
 
 use std::path::Path;
 
-use hwasp_core::Executor;
 use hwasp_plot::{Plot, TornadoRow, tornado_plot, write_plot};
 use hwasp_runs::files::{self, Disk};
 use hwasp_runs::{encode, io_error};
-use hwasp_training::{Assembly, EvaluateError, Reference};
+use hwasp_training::{Assembly, Collector, EvaluateError, Reference};
 
 pub use self::errors::{ManufacturingError, ManufacturingErrorFault, manufacturing_errors};
 pub use self::list::{Sensitivities, Sensitivity, Side};
@@ -42,7 +41,7 @@ pub fn tolerances(
     params: &[f32],
     errors: &[ManufacturingError],
     asked: (u64, u64),
-    executor: &dyn Executor,
+    collector: &dyn Collector,
     watch: &mut dyn FnMut(usize, usize),
 ) -> Result<Sensitivities, EvaluateError> {
     let (spec, space) = (assembly.experiment(), assembly.policy.space());
@@ -52,7 +51,7 @@ pub fn tolerances(
         done += 1;
         watch(done, all);
     };
-    let nominal = Reference::new(assembly, &built, params, asked, executor)?;
+    let nominal = Reference::new(collector, assembly, &built, params, asked)?;
     tell();
     let mut side = |i: usize, value: f64| -> Result<Side, EvaluateError> {
         let mut design = built.clone();

@@ -1,0 +1,26 @@
+//! Arguments of commands that may have their work done elsewhere.
+
+#[cfg(feature = "cluster")]
+use std::time::Duration;
+
+#[cfg(feature = "cluster")]
+use super::ConnectArgs;
+#[cfg(feature = "cluster")]
+use super::parse::seconds;
+
+/// Workers on other machines, where a command may use them.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ServerArgs {
+    /// Have the work done by the workers of this queue, such as nats://127.0.0.1:4222; the result has the same bits. `hwasp cluster up`
+    /// starts one
+    #[cfg(feature = "cluster")]
+    #[arg(long, value_name = "ADDRESS", help_heading = "Workers on other machines")]
+    pub(crate) server: Option<String>,
+    #[cfg(feature = "cluster")]
+    #[command(flatten)]
+    pub(crate) connect: ConnectArgs,
+    /// How long no worker may be heard of before it ends with an error. A training that ends so goes on with --resume
+    #[cfg(feature = "cluster")]
+    #[arg(long, value_name = "SECONDS", default_value = "600", allow_negative_numbers = true, value_parser = seconds, help_heading = "Workers on other machines")]
+    pub(crate) patience: Duration,
+}

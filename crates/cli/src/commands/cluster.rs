@@ -1,0 +1,184 @@
+//! `hwasp cluster`.
+
+use std::fs;
+use std::num::NonZeroUsize;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use hwasp_cluster::{LocalServer, Scripts, Server, ServerOptions, SlurmOptions, status};
+
+use super::{stop_on_signal, write_out};
+use crate::args::{ClusterArgs, ClusterCommand, SlurmArgs, StatusArgs, UpArgs};
+use crate::failure::Failure;
+use crate::{log, output, report};
+
+/// How often it is looked after what was started.
+const LOOK: Duration = Duration::from_millis(200);
+/// How long workers may take to come to their end.
+const END: Duration = Duration::from_mins(5);
+
+pub(crate) fn run(args: &ClusterArgs) -> Result<(), Failure> {
+    match &args.command {
+        ClusterCommand::Up(up) => self::up(up),
+        ClusterCommand::Status(args) => tell(args),
+        ClusterCommand::Slurm(args) => slurm(args),
+    }
+}
+
+fn up(args: &UpArgs) -> Result<(), Failure> {
+    log::with_times();
+    let stop = stop_on_signal()?;
+    let options = ServerOptions {
+        program: args.nats_server.clone(),
+        bind: args.bind,
+        port: args.port.and_then(|port| u16::try_from(port).ok()),
+        store: args.store.clone(),
+        most_bytes: args.most * 1_000_000_000,
+        certificate: args.tls_cert.clone().zip(args.tls_key.clone()),
+    };
+    let mut local = LocalServer::start(&options).map_err(Failure::input)?;
+    let server = local.server.clone();
+    if !args.bind.is_loopback() && options.certificate.is_none() {
+        tracing::warn!("the queue can be reached from other machines, and without TLS its token can be read on the way");
+    }
+    let workers = usize::try_from(args.workers).unwrap_or(usize::MAX);
+    let threads = args.threads.map_or_else(|| share(workers), NonZeroUsize::get);
+    let mut crew: Vec<Started> = (0..workers).map(|i| Started::new(i, threads, &server)).collect::<Result<_, _>>()?;
+    if let Some(path) = &args.address_file {
+        write_out(path, &format!("{}\n", server.address))?;
+    }
+    output::print(&told(&server, workers, threads))?;
+    while !stop.load(Ordering::Relaxed) {
+        std::thread::sleep(LOOK);
+        if local.ended() {
+            crew.iter_mut().for_each(Started::ask_to_end);
+            let log = args.store.join(hwasp_cluster::Stored::LOG);
+            return Err(Failure::from(std::io::Error::other("the queue has ended by itself"))
+                .hint(&format!("{} has its log; the same command begins again with what it kept", log.display())));
+        }
+        for worker in &mut crew {
+            worker.look_after(threads, &server)?;
+        }
+    }
+    output::remark("ending: workers come to the end of their jobs, or keep their state");
+    crew.iter_mut().for_each(Started::ask_to_end);
+    let began = Instant::now();
+    while began.elapsed() < END && !crew.iter_mut().all(Started::ended) {
+        std::thread::sleep(LOOK);
+    }
+    crew.iter_mut().for_each(Started::make_end);
+    Ok(())
+}
+
+/// What there is now, and what to do with it.
+fn told(server: &Server, workers: usize, threads: usize) -> String {
+    let token = server.token.as_deref().map_or(String::new(), |token| format!(" --token-file {}", output::shell(token)));
+    let authority =
+        server.authority.as_deref().map_or(String::new(), |file| format!(" --tls-ca {}", output::shell(file)));
+    let address = &server.address;
+    let there = match workers {
+        0 => "no workers".to_owned(),
+        1 => format!("a worker of {threads} threads"),
+        _ => format!("{workers} workers of {threads} threads each"),
+    };
+    format!(
+        "{address}: a queue, and {there}. Ctrl-C ends all of it.\n\n  \
+         hwasp train EXPERIMENT --server {address}{token}{authority}\n  \
+         hwasp worker --server {address}{token}{authority}\n  \
+         hwasp cluster status --server {address}{token}{authority}\n"
+    )
+}
+
+/// Threads for each of so many workers.
+fn share(workers: usize) -> usize {
+    let all = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    (all / workers.max(1)).max(1)
+}
+
+/// A worker that was started with the queue.
+struct Started {
+    child: Child,
+    index: usize,
+    since: Instant,
+}
+
+impl Started {
+    fn new(index: usize, threads: usize, server: &Server) -> Result<Self, Failure> {
+        let mut command = Command::new(std::env::current_exe()?);
+        command.args(["worker", "--until-input-ends", "--server", &server.address]);
+        command.args(["--name", &format!("local-{}", index + 1), "--threads", &threads.to_string()]);
+        for (option, file) in [("--token-file", &server.token), ("--tls-ca", &server.authority)] {
+            if let Some(file) = file {
+                command.arg(option).arg(file);
+            }
+        }
+        // Ctrl-C is for us alone: we ask it to end.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        Ok(Self { child: command.stdin(Stdio::piped()).spawn()?, index, since: Instant::now() })
+    }
+
+    /// Starts another one in the place of one that ended by itself.
+    fn look_after(&mut self, threads: usize, server: &Server) -> Result<(), Failure> {
+        // One that cannot even begin is not begun over and over.
+        const REST: Duration = Duration::from_secs(5);
+        if self.ended() && self.since.elapsed() > REST {
+            tracing::warn!("local-{} has ended by itself; another one takes its place", self.index + 1);
+            *self = Self::new(self.index, threads, server)?;
+        }
+        Ok(())
+    }
+
+    fn ended(&mut self) -> bool {
+        !matches!(self.child.try_wait(), Ok(None))
+    }
+
+    fn ask_to_end(&mut self) {
+        drop(self.child.stdin.take());
+    }
+
+    fn make_end(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn tell(args: &StatusArgs) -> Result<(), Failure> {
+    let status = status(&args.connect.server(&args.server)).map_err(Failure::input)?;
+    let text = if args.json {
+        format!("{}\n", serde_json::to_string_pretty(&status)?)
+    } else {
+        report::cluster::status(&status)
+    };
+    Ok(output::print(&text)?)
+}
+
+fn slurm(args: &SlurmArgs) -> Result<(), Failure> {
+    let shared = std::path::absolute(&args.shared)?;
+    let options = SlurmOptions {
+        program: std::env::current_exe()?.display().to_string(),
+        folder: shared.display().to_string(),
+        partition: args.partition.clone(),
+        time: args.time.clone(),
+        memory: args.memory.clone(),
+        workers: args.workers,
+        threads: args.threads.get() as u64,
+    };
+    let Scripts { server, workers } = Scripts::new(&options);
+    fs::create_dir_all(&args.out)?;
+    let (first, second) = (args.out.join("server.sbatch"), args.out.join("workers.sbatch"));
+    write_out(&first, &server)?;
+    write_out(&second, &workers)?;
+    let (first, second) = (output::shell(&first), output::shell(&second));
+    let (address, token) = (shared.join("address"), shared.join("queue/token"));
+    Ok(output::print(&format!(
+        "sbatch {first}      the queue, on a node of its own\n\
+         sbatch {second}     {} workers of {} threads\n\n\
+         hwasp train EXPERIMENT --server \"$(cat {})\" --token-file {}\n",
+        args.workers,
+        args.threads,
+        output::shell(&address),
+        output::shell(&token)
+    ))?)
+}

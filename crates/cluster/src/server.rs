@@ -1,0 +1,150 @@
+//! Where the queue is, and how to be let in.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use async_nats::{Client, ConnectErrorKind, ConnectOptions, Event};
+
+use crate::error::ClusterError;
+
+/// The longest file with a token, bytes.
+const LONGEST_TOKEN: u64 = 4096;
+/// How long a first connection may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// The longest pause between two attempts to be connected again.
+const LONGEST_PAUSE: Duration = Duration::from_secs(2);
+/// Messages that may wait for us; those beyond are asked for again.
+const WAITING: usize = 1 << 16;
+
+/// A server, and what opens it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Server {
+    /// `nats://HOST:PORT`, or `tls://HOST:PORT`.
+    pub address: String,
+    /// The file with the token.
+    pub token: Option<PathBuf>,
+    /// The certificates by which the server is known, where they are not the system's (PEM).
+    pub authority: Option<PathBuf>,
+    /// Our own certificate and its key, where the server wants to know us (PEM).
+    pub certificate: Option<(PathBuf, PathBuf)>,
+}
+
+impl Server {
+    /// Connects; `name` is what the server calls us. Later the connection comes back by itself.
+    pub(crate) async fn connect(&self, name: &str) -> Result<Client, ClusterError> {
+        let host = self.check()?;
+        let mut options = ConnectOptions::new()
+            .name(name)
+            .connection_timeout(PATIENCE)
+            .subscription_capacity(WAITING)
+            // A cut network is noticed in seconds.
+            .ping_interval(Duration::from_secs(5))
+            .reconnect_delay_callback(|attempt| LONGEST_PAUSE.min(Duration::from_millis(100 * attempt.max(1) as u64)))
+            .event_callback(|event| async move { tell(&event) });
+        if let Some(path) = &self.token {
+            options = options.token(token(path)?);
+        }
+        if let Some(path) = &self.authority {
+            readable(path)?;
+            options = options.add_root_certificates(path.clone()).require_tls(true);
+        }
+        if let Some((certificate, key)) = &self.certificate {
+            readable(certificate)?;
+            readable(key)?;
+            options = options.add_client_certificate(certificate.clone(), key.clone()).require_tls(true);
+        }
+        if !is_loopback(&host) && !self.is_private() {
+            tracing::warn!(
+                "{} is no loopback address and has no TLS: whoever listens on the way reads the token and all that travels",
+                self.address
+            );
+        }
+        options.connect(&self.address).await.map_err(|error| ClusterError::Connect {
+            address: self.address.clone(),
+            why: error.to_string(),
+            hint: match error.kind() {
+                ConnectErrorKind::Authentication | ConnectErrorKind::AuthorizationViolation => {
+                    "the server wants a token: --token-file names the file that holds it"
+                }
+                ConnectErrorKind::Tls => "--tls-ca names the certificate by which the server is known",
+                _ => "`hwasp cluster up` starts a server on this machine; see that address and port are right",
+            },
+        })
+    }
+
+    fn is_private(&self) -> bool {
+        self.address.starts_with("tls://") || self.authority.is_some() || self.certificate.is_some()
+    }
+
+    /// The host of the address.
+    fn check(&self) -> Result<String, ClusterError> {
+        let fault = |why: &str| ClusterError::Address { address: self.address.clone(), why: why.to_owned() };
+        let (scheme, rest) = self.address.split_once("://").ok_or_else(|| fault("it begins with nats:// or tls://"))?;
+        if !["nats", "tls"].contains(&scheme) {
+            return Err(fault("it begins with nats:// or tls://"));
+        }
+        if rest.contains('@') {
+            return Err(fault("a token in it would be seen in lists of processes; put it into a file, for --token-file"));
+        }
+        let host = rest.rsplit_once(':').map_or(rest, |(host, _)| host);
+        if host.is_empty() || rest.contains(['/', ' ']) {
+            return Err(fault("a host has to follow, and perhaps a port"));
+        }
+        Ok(host.trim_matches(['[', ']']).to_owned())
+    }
+}
+
+fn is_loopback(host: &str) -> bool {
+    host == "localhost" || host.parse::<std::net::IpAddr>().is_ok_and(|ip| ip.is_loopback())
+}
+
+fn readable(path: &Path) -> Result<(), ClusterError> {
+    fs::File::open(path).map(drop).map_err(|error| file(path, &error))
+}
+
+fn file(path: &Path, why: &dyn std::fmt::Display) -> ClusterError {
+    ClusterError::File { path: path.to_owned(), why: why.to_string() }
+}
+
+/// The token in a file; spaces and line breaks around it are no part of it.
+pub(crate) fn token(path: &Path) -> Result<String, ClusterError> {
+    let length = fs::metadata(path).map_err(|error| file(path, &error))?.len();
+    if length > LONGEST_TOKEN {
+        return Err(file(path, &format!("a token has at most {LONGEST_TOKEN} bytes, and it has {length}")));
+    }
+    let text = fs::read_to_string(path).map_err(|error| file(path, &error))?;
+    let token = text.trim();
+    if token.is_empty() || token.contains(char::is_whitespace) {
+        return Err(file(path, &"it has to hold a token, one word"));
+    }
+    Ok(token.to_owned())
+}
+
+/// The connection's own news.
+fn tell(event: &Event) {
+    match event {
+        Event::Disconnected => tracing::warn!("the connection to the server is gone; it is tried again"),
+        Event::Connected => tracing::debug!("connected"),
+        Event::SlowConsumer(_) => tracing::debug!("messages came faster than they were read; they are asked for again"),
+        Event::ServerError(error) => tracing::warn!("the server says: {error}"),
+        Event::ClientError(error) => tracing::debug!("the connection: {error}"),
+        Event::LameDuckMode | Event::Draining | Event::Closed => tracing::debug!("{event}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_checked_before_anything_is_sent() {
+        let host = |address: &str| Server { address: address.to_owned(), ..Server::default() }.check();
+        assert_eq!(host("nats://127.0.0.1:4222").unwrap(), "127.0.0.1");
+        assert_eq!(host("tls://queue.lab.example").unwrap(), "queue.lab.example");
+        assert_eq!(host("nats://[::1]:4222").unwrap(), "::1");
+        for wrong in ["127.0.0.1:4222", "http://host", "nats://", "nats://:4222", "nats://secret@host:4222", "nats://a b"] {
+            assert!(host(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! What the server keeps: streams, values under their hashes, notes of jobs.
+
+use std::time::{Duration, Instant};
+
+use async_nats::Client;
+use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
+use async_nats::jetstream::context::{Context, ContextBuilder, PublishErrorKind};
+use async_nats::jetstream::message::PublishMessage;
+use async_nats::jetstream::publish::PublishAck;
+use async_nats::jetstream::stream::{self, DirectGetErrorKind, DiscardPolicy, RetentionPolicy, StorageType, Stream};
+use bytes::{Bytes, BytesMut};
+
+use crate::error::ClusterError;
+use crate::message::{ACK_WAIT, Class, Kept, Payload, hash};
+use crate::subjects;
+
+/// Values up to this size travel in the message that needs them, bytes.
+pub(crate) const INLINE: usize = 64 << 10;
+/// What a message has besides a part, bytes, at most.
+const HEAD: usize = 4 << 10;
+/// The largest part of a value, bytes: larger messages hold up small ones.
+const PART: usize = 512 << 10;
+/// How long what belongs to a run is kept where nobody removes it.
+const MOST_AGE: Duration = Duration::from_hours(24 * 14);
+/// Pauses between two attempts.
+const PAUSE: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(2)];
+/// Jobs that may be at work at once.
+const AT_WORK: i64 = 1 << 20;
+
+/// The queue and what is kept.
+#[derive(Clone)]
+pub(crate) struct Store {
+    pub(crate) client: Client,
+    pub(crate) context: Context,
+    address: String,
+}
+
+/// Why something is not kept.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum StoreError {
+    #[error("the server kept nothing for {}: {why}", seconds(*.waited))]
+    Kept { waited: Duration, why: String },
+    #[error("what it names is not kept any more")]
+    Gone,
+    #[error("it is not what it is named after")]
+    Other,
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.0} s", time.as_secs_f64())
+}
+
+impl Store {
+    /// Makes the streams where they are not there yet.
+    pub(crate) async fn open(client: Client, address: &str) -> Result<Self, ClusterError> {
+        let context = ContextBuilder::new().ack_timeout(Duration::from_secs(5)).build(client.clone());
+        let store = Self { client, context, address: address.to_owned() };
+        store.ensure().await.map_err(|why| ClusterError::Queue { address: store.address.clone(), why })?;
+        Ok(store)
+    }
+
+    async fn ensure(&self) -> Result<(), String> {
+        let stream = |name: &str, subjects: &str| stream::Config {
+            name: name.to_owned(),
+            subjects: vec![subjects.to_owned()],
+            storage: StorageType::File,
+            discard: DiscardPolicy::New,
+            max_age: MOST_AGE,
+            num_replicas: 1,
+            ..stream::Config::default()
+        };
+        let jobs = stream::Config {
+            retention: RetentionPolicy::WorkQueue,
+            // Long enough for a job that is published again because its acknowledgement was late.
+            duplicate_window: Duration::from_secs(30),
+            ..stream(subjects::JOBS, subjects::ALL_JOBS)
+        };
+        let data = stream::Config { allow_direct: true, ..stream(subjects::DATA, subjects::ALL_DATA) };
+        for config in [jobs, data] {
+            self.context.get_or_create_stream(config).await.map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Jobs for workers of one identity.
+    pub(crate) async fn consumer(&self, identity: &str) -> Result<PullConsumer, String> {
+        self.ensure().await?;
+        let jobs = self.jobs().await?;
+        let config = pull::Config {
+            durable_name: Some(subjects::consumer(identity)),
+            filter_subject: subjects::jobs_for(identity),
+            ack_policy: AckPolicy::Explicit,
+            ack_wait: ACK_WAIT,
+            max_ack_pending: AT_WORK,
+            // Workers that wait for jobs.
+            max_waiting: 1 << 16,
+            ..pull::Config::default()
+        };
+        jobs.create_consumer(config).await.map_err(|error| error.to_string())
+    }
+
+    pub(crate) async fn jobs(&self) -> Result<Stream<()>, String> {
+        self.context.get_stream_no_info(subjects::JOBS).await.map_err(|error| error.to_string())
+    }
+
+    pub(crate) async fn data(&self) -> Result<Stream<()>, String> {
+        self.context.get_stream_no_info(subjects::DATA).await.map_err(|error| error.to_string())
+    }
+
+    /// Keeps a message, and tries for so long. `id`: messages of one id are kept once.
+    pub(crate) async fn publish(
+        &self,
+        subject: &str,
+        bytes: Bytes,
+        id: Option<&str>,
+        patience: Duration,
+    ) -> Result<PublishAck, StoreError> {
+        let (began, mut pause, mut told) = (Instant::now(), PAUSE[0], false);
+        loop {
+            let mut message = PublishMessage::build().payload(bytes.clone());
+            if let Some(id) = id {
+                message = message.message_id(id);
+            }
+            let sent = match self.context.send_publish(subject.to_owned(), message).await {
+                Ok(acknowledged) => acknowledged.await,
+                Err(error) => Err(error),
+            };
+            let error = match sent {
+                Ok(acknowledged) => return Ok(acknowledged),
+                Err(error) => error,
+            };
+            let why = match std::error::Error::source(&error) {
+                Some(source) => format!("{error}: {source}"),
+                None => error.to_string(),
+            };
+            if began.elapsed() >= patience || error.kind() == PublishErrorKind::MaxPayloadExceeded {
+                return Err(StoreError::Kept { waited: began.elapsed(), why });
+            }
+            if !told && pause > PAUSE[0] {
+                tracing::warn!("the server does not keep what is sent ({why}); it is tried again for {}", seconds(patience));
+                told = true;
+            }
+            if error.kind() == PublishErrorKind::StreamNotFound {
+                // It begins anew, with an empty store.
+                let _ = self.ensure().await;
+            }
+            tokio::time::sleep(pause).await;
+            pause = (2 * pause).min(PAUSE[1]);
+        }
+    }
+
+    /// Keeps bytes of a run, unless they are few.
+    pub(crate) async fn put(
+        &self,
+        run: &str,
+        class: Class,
+        bytes: Vec<u8>,
+        patience: Duration,
+    ) -> Result<Payload, StoreError> {
+        if bytes.len() <= INLINE {
+            return Ok(Payload::Here(bytes));
+        }
+        Ok(Payload::Kept(self.keep(run, class, bytes.into(), patience).await?))
+    }
+
+    /// Keeps bytes of a run, few or many.
+    pub(crate) async fn keep(
+        &self,
+        run: &str,
+        class: Class,
+        bytes: Bytes,
+        patience: Duration,
+    ) -> Result<Kept, StoreError> {
+        let largest = self.part();
+        let kept = Kept { class, hash: hash(&bytes), bytes: bytes.len() as u64 };
+        let parts = bytes.len().div_ceil(largest);
+        let part = |i: usize| bytes.slice(i * largest..((i + 1) * largest).min(bytes.len()));
+        let publish = |i: usize| {
+            let subject = subjects::part(run, class.word(), &kept.hash, i);
+            let part = part(i);
+            async move { self.publish(&subject, part, None, patience).await }
+        };
+        // All at once: one way there and back, and not one for each.
+        futures_util::future::try_join_all((0..parts).map(publish)).await?;
+        Ok(kept)
+    }
+
+    /// The largest part of a value, bytes.
+    fn part(&self) -> usize {
+        PART.min(self.client.max_payload().saturating_sub(HEAD)).max(1)
+    }
+
+    /// The bytes of a payload.
+    pub(crate) async fn get(&self, run: &str, payload: &Payload) -> Result<Bytes, StoreError> {
+        match payload {
+            Payload::Here(bytes) => Ok(Bytes::from(bytes.clone())),
+            Payload::Kept(kept) => self.kept(run, kept).await,
+        }
+    }
+
+    /// The bytes of a kept value.
+    pub(crate) async fn kept(&self, run: &str, kept: &Kept) -> Result<Bytes, StoreError> {
+        if !subjects::is_word(&kept.hash) {
+            return Err(StoreError::Other);
+        }
+        let (mut bytes, mut i) = (BytesMut::new(), 0);
+        while (bytes.len() as u64) < kept.bytes {
+            let part = self.last(&subjects::part(run, kept.class.word(), &kept.hash, i)).await?.ok_or(StoreError::Gone)?;
+            if part.is_empty() {
+                return Err(StoreError::Other);
+            }
+            bytes.extend_from_slice(&part);
+            i += 1;
+        }
+        if hash(&bytes) == kept.hash { Ok(bytes.freeze()) } else { Err(StoreError::Other) }
+    }
+
+    /// The newest message of a subject, if there is one.
+    pub(crate) async fn last(&self, subject: &str) -> Result<Option<Bytes>, StoreError> {
+        self.read(|data| {
+            let subject = subject.to_owned();
+            async move { data.direct_get_last_for_subject(subject).await.map(|message| message.payload) }
+        })
+        .await
+    }
+
+    /// The first message of a subject from a number of the stream on, and its number.
+    pub(crate) async fn next(&self, subject: &str, from: u64) -> Result<Option<(u64, Bytes)>, StoreError> {
+        self.read(|data| {
+            let subject = subject.to_owned();
+            async move {
+                let message = data.direct_get_next_for_subject(subject, Some(from)).await;
+                message.map(|message| (message.sequence, message.payload))
+            }
+        })
+        .await
+    }
+
+    /// Reads, and tries again while the server is away.
+    async fn read<T, F>(&self, get: impl Fn(Stream<()>) -> F) -> Result<Option<T>, StoreError>
+    where
+        F: Future<Output = Result<T, async_nats::jetstream::stream::DirectGetError>>,
+    {
+        const PATIENCE: Duration = Duration::from_mins(2);
+        let (began, mut pause) = (Instant::now(), PAUSE[0]);
+        loop {
+            let why = match self.data().await {
+                Ok(data) => match get(data).await {
+                    Ok(found) => return Ok(Some(found)),
+                    Err(error) if error.kind() == DirectGetErrorKind::NotFound => return Ok(None),
+                    Err(error) => error.to_string(),
+                },
+                Err(why) => why,
+            };
+            if began.elapsed() >= PATIENCE {
+                return Err(StoreError::Kept { waited: began.elapsed(), why });
+            }
+            tokio::time::sleep(pause).await;
+            pause = (2 * pause).min(PAUSE[1]);
+            // Where it came back with an empty store, nothing is there.
+            let _ = self.ensure().await;
+        }
+    }
+
+    /// Removes what is kept under some subjects. What cannot be removed now ages.
+    pub(crate) async fn remove(&self, subjects: String) {
+        if let Ok(data) = self.data().await {
+            let _ = data.purge().filter(subjects).await;
+        }
+    }
+
+    /// Removes the messages of some subjects before a number of the stream.
+    pub(crate) async fn remove_before(&self, subjects: &str, sequence: u64) {
+        if let Ok(data) = self.data().await {
+            let _ = data.purge().filter(subjects).sequence(sequence).await;
+        }
+    }
+
+    /// Removes a kept value.
+    pub(crate) async fn drop(&self, run: &str, payload: &Payload) {
+        if let Payload::Kept(kept) = payload {
+            self.remove(subjects::parts(run, kept.class.word(), &kept.hash)).await;
+        }
+    }
+}

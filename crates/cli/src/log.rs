@@ -42,9 +42,14 @@ pub(crate) fn begin(format: LogFormat, level: LogLevel, quiet: bool) {
         LogLevel::Debug => LevelFilter::DEBUG,
     };
     let bar = has_terminal() && format == LogFormat::Text;
-    let shown = move |event: &tracing::Metadata<'_>| *event.level() <= level && !(bar && event.target() == PROGRESS);
+    // What the queue's client says of itself is said in our words, too.
+    let ours = |event: &tracing::Metadata<'_>| !event.target().starts_with("async_nats");
+    let shown = move |event: &tracing::Metadata<'_>| {
+        *event.level() <= level && ours(event) && !(bar && event.target() == PROGRESS)
+    };
     let base = || tracing_subscriber::fmt::layer().with_target(false).with_ansi(false).log_internal_errors(false);
-    let (shown, all) = (filter_fn(shown), LevelFilter::DEBUG);
+    let all = move |event: &tracing::Metadata<'_>| *event.level() <= LevelFilter::DEBUG && ours(event);
+    let (shown, all) = (filter_fn(shown), filter_fn(all));
     let layers = match format {
         LogFormat::Text => [
             base().event_format(Plain).with_writer(stderr).with_filter(shown).boxed(),

@@ -1,10 +1,10 @@
-//! What travels: jobs, answers and news, as compressed `MessagePack`.
+//! What travels: jobs, answers and news, in the compressed binary form of `postcard`.
 
 use std::time::Duration;
 
 use hwasp_algos::Archive;
 use hwasp_core::{Batch, Episodes, LaneSteps, bits};
-use hwasp_training::collect::{Answer, CollectError, Stage};
+use hwasp_training::collect::{Answer, CollectError, ExperimentText, Stage};
 use hwasp_training::{Checkpoint, Evaluation, MetricsRow, Trained};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,9 @@ use sha2::{Digest, Sha256};
 /// The largest value that is unpacked, bytes: what comes from elsewhere may claim any size.
 const LARGEST: usize = 1 << 30;
 
-/// Packs a value. Field names are written, as in JSON: fields that are left out and enums read back as they were.
+/// Packs a value. Both sides are the same program, so that no field needs a name.
 pub(crate) fn pack<T: Serialize>(value: &T) -> Result<Vec<u8>, String> {
-    let bytes = rmp_serde::to_vec_named(value).map_err(|error| error.to_string())?;
+    let bytes = postcard::to_stdvec(value).map_err(|error| error.to_string())?;
     Ok(lz4_flex::compress_prepend_size(&bytes))
 }
 
@@ -26,13 +26,32 @@ pub(crate) fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
         return Err(format!("{size} bytes are more than the {LARGEST} that may be"));
     }
     let bytes = lz4_flex::decompress(rest, size).map_err(|error| error.to_string())?;
-    rmp_serde::from_slice(&bytes).map_err(|error| error.to_string())
+    postcard::from_bytes(&bytes).map_err(|error| error.to_string())
 }
 
 /// The name of some bytes.
 pub(crate) fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }
+
+/// Values that leave out fields, or whose form is told by their content, travel as JSON inside.
+mod as_json {
+    use serde::de::{DeserializeOwned, Error as _};
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<T: Serialize, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&serde_json::to_string(value).map_err(S::Error::custom)?)
+    }
+
+    pub(super) fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        serde_json::from_slice(String::deserialize(deserializer)?.as_bytes()).map_err(D::Error::custom)
+    }
+}
+
+/// The text and the files of an experiment, as they are kept.
+#[derive(Clone, Serialize, Deserialize)]
+pub(crate) struct Named(#[serde(with = "as_json")] pub(crate) ExperimentText);
 
 /// Bytes, here or kept under their hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -81,7 +100,7 @@ pub(crate) struct Job {
     pub(crate) run: String,
     /// Its name.
     pub(crate) name: String,
-    /// The experiment's text and files, packed.
+    /// A packed [`Named`].
     pub(crate) experiment: Kept,
     pub(crate) task: Task,
 }
@@ -146,7 +165,7 @@ impl Task {
             Self::Training { .. } => Self::Training { from: None },
             other => other.clone(),
         };
-        let bytes = rmp_serde::to_vec_named(&(identity, &experiment.hash, &bare)).map_err(|error| error.to_string())?;
+        let bytes = postcard::to_stdvec(&(identity, &experiment.hash, &bare)).map_err(|error| error.to_string())?;
         Ok(hash(&bytes))
     }
 }
@@ -171,7 +190,7 @@ pub(crate) type Content = Result<Answer, CollectError>;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum TrainingAnswer {
     /// Its end.
-    Trained(Box<Trained>),
+    Trained(#[serde(with = "as_json")] Box<Trained>),
     /// A failure that would come again, in words.
     Failed(String),
     /// It could not be begun here.
@@ -202,7 +221,7 @@ pub(crate) enum Told {
     Checkpoint { iteration: u64, state: Payload },
     Failed { checkpoint: Box<Checkpoint>, batch: Option<Box<Batch>>, what: String },
     Evaluating,
-    Evaluated(Box<Evaluation>),
+    Evaluated(#[serde(with = "as_json")] Box<Evaluation>),
 }
 
 /// Packed states of candidates.

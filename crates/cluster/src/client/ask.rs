@@ -14,7 +14,7 @@ use super::crew::{Crew, call};
 use super::run::RunName;
 use crate::error::ClusterError;
 use crate::identity::Identity;
-use crate::message::{Class, Envelope, Job, Kept, Payload, StateNote, Task, pack, unpack};
+use crate::message::{Class, Envelope, Job, Kept, Named, Payload, StateNote, Task, pack, unpack};
 use crate::store::{INLINE, Store};
 use crate::subjects;
 
@@ -206,7 +206,7 @@ impl Asker {
         if let Some((_, kept, need)) = known {
             return Ok((kept, need));
         }
-        let need = Need { class: Class::Run, bytes: pack(text).map_err(unanswered)?.into() };
+        let need = Need { class: Class::Run, bytes: pack(&Named(text.clone())).map_err(unanswered)?.into() };
         let kept = self.keep(&need).await?;
         lock(&self.experiments).push((text.clone(), kept.clone(), need.clone()));
         Ok((kept, need))

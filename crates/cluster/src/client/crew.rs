@@ -12,7 +12,7 @@ use crate::subjects;
 use crate::worker::Card;
 
 /// How long answers to a call are waited for after the last one.
-pub(crate) const HEARD: Duration = Duration::from_millis(300);
+pub(crate) const HEARD: Duration = Duration::from_millis(150);
 /// Cards that are read, at most.
 const MOST_CARDS: usize = 100_000;
 
@@ -64,7 +64,7 @@ pub(crate) async fn call(store: &Store, asks: Option<&Identity>) -> Result<Vec<C
         } else if answer.payload.is_empty() {
             break;
         }
-        if cards.len() >= MOST_CARDS || began.elapsed() > 20 * HEARD {
+        if cards.len() >= MOST_CARDS || began.elapsed() > 40 * HEARD {
             break;
         }
     }

@@ -24,7 +24,7 @@ use super::{Served, WorkerOptions};
 use crate::error::ClusterError;
 use crate::identity::Identity;
 use crate::message::{
-    Block, Class, Content, Envelope, Job, Kept, News, PROGRESS, Params, Payload, State, StateNote, Task, Told,
+    Block, Class, Content, Envelope, Job, Kept, Named, News, PROGRESS, Params, Payload, State, StateNote, Task, Told,
     TrainingAnswer, pack, unpack,
 };
 use crate::store::{Store, StoreError};
@@ -421,7 +421,7 @@ impl Service {
             return Ok(known);
         }
         let bytes = self.store.kept(run, kept).await?;
-        let text: ExperimentText = unpack(&bytes).map_err(Outcome::Lost)?;
+        let Named(text) = unpack(&bytes).map_err(Outcome::Lost)?;
         remember(&self.experiments, &kept.hash, text.clone());
         Ok(text)
     }

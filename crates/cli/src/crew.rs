@@ -145,8 +145,8 @@ impl Observer for &Crew {
 #[cfg(feature = "cluster")]
 pub(crate) fn identity(catalogue: &Catalogue) -> Result<Identity, Failure> {
     #[cfg(feature = "mujoco")]
-    let engine = hwasp_mujoco::engine::version();
+    let engine = Some(hwasp_mujoco::engine::version());
     #[cfg(not(feature = "mujoco"))]
-    let engine = "none".to_owned();
-    Ok(Identity::new(catalogue, &engine)?)
+    let engine: Option<String> = None;
+    Ok(Identity::new(catalogue, engine.as_deref())?)
 }

@@ -103,7 +103,7 @@ fn obey(command: &Command, catalogue: &Catalogue) -> Result<(), Failure> {
         #[cfg(feature = "cluster")]
         Command::Worker(worker) => commands::worker::run(worker, catalogue),
         #[cfg(feature = "cluster")]
-        Command::Cluster(cluster) => commands::cluster::run(cluster),
+        Command::Cluster(cluster) => commands::cluster::run(cluster, catalogue),
         Command::Check(check) => commands::check::run(check, catalogue),
         Command::Schema(schema) => commands::schema::run(schema, catalogue),
         Command::List => commands::list::run(catalogue),

@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::message::{hash, pack};
 
-/// Experiments of which an episode is run: the first without the engine, the second in it.
-const PROBES: [&str; 2] = ["mass-spring", "z-grasp"];
+/// Experiments of which an episode is run, and whether it needs the engine.
+const PROBES: [(&str, bool); 2] = [("mass-spring", false), ("z-grasp", true)];
+/// What a program has that has no engine.
+const NO_ENGINE: &str = "none";
 const PROBE_STEPS: usize = 60;
 
 /// What the bits of an answer depend on, besides its request.
@@ -32,9 +34,9 @@ impl Identity {
     ///
     /// # Errors
     /// Where an episode of a probe cannot be run.
-    pub fn new(catalogue: &Catalogue, engine: &str) -> Result<Self, CollectError> {
+    pub fn new(catalogue: &Catalogue, engine: Option<&str>) -> Result<Self, CollectError> {
         let mut numbers = elementary();
-        for name in PROBES {
+        for (name, _) in PROBES.iter().filter(|probe| !probe.1 || engine.is_some()) {
             numbers.extend(episode(name, catalogue)?);
         }
         let problems = catalogue.problems().iter().map(|problem| problem.name());
@@ -43,7 +45,7 @@ impl Identity {
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             sources: env!("HWASP_SOURCES").to_owned(),
-            engine: engine.to_owned(),
+            engine: engine.unwrap_or(NO_ENGINE).to_owned(),
             catalogue: short(names.join("\n").as_bytes()),
             arithmetic: short(&numbers),
         })

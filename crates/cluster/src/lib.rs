@@ -26,7 +26,7 @@ mod store;
 mod subjects;
 mod worker;
 
-pub use client::{Cluster, RemoteCollector, RunName};
+pub use client::{Cluster, Measured, RemoteCollector, RunName, measure};
 pub use error::ClusterError;
 pub use identity::Identity;
 pub use local::{LocalServer, ServerOptions, Stored};

@@ -231,3 +231,6 @@ pub(crate) type State = Archive;
 pub(crate) const PROGRESS: Duration = Duration::from_secs(4);
 /// How long the queue waits for that before it hands the job to another one.
 pub(crate) const ACK_WAIT: Duration = Duration::from_secs(15);
+
+#[cfg(test)]
+mod tests;

@@ -81,3 +81,37 @@ fn quoted(text: &str) -> String {
     let plain = !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || "-._/".contains(c));
     if plain { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::process::{Command, Stdio};
+
+    use super::*;
+
+    /// A shell reads them, whatever folders are called.
+    #[test]
+    fn scripts_are_scripts() {
+        let options = SlurmOptions {
+            program: "/opt/lab's tools/hwasp".into(),
+            folder: "/scratch/a b/$HOME".into(),
+            partition: Some("cpu".into()),
+            time: "2-00:00:00".into(),
+            memory: "4G".into(),
+            workers: 16,
+            threads: 4,
+        };
+        let Scripts { server, workers } = Scripts::new(&options);
+        for script in [&server, &workers] {
+            assert!(script.contains("#SBATCH --partition=cpu\n") && script.contains("#SBATCH --requeue\n"), "{script}");
+            assert!(script.contains("folder='/scratch/a b/$HOME'\n"), "{script}");
+            assert!(script.contains(r"exec '/opt/lab'\''s tools/hwasp' "), "{script}");
+            let shell = Command::new("bash").arg("-n").stdin(Stdio::piped()).stderr(Stdio::piped()).spawn();
+            let mut shell = shell.unwrap();
+            shell.stdin.take().unwrap().write_all(script.as_bytes()).unwrap();
+            let checked = shell.wait_with_output().unwrap();
+            assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+        }
+        assert!(workers.contains("#SBATCH --array=0-15\n"), "{workers}");
+    }
+}

@@ -81,6 +81,8 @@ pub(crate) enum ClusterCommand {
     Up(UpArgs),
     /// Say what waits and who works: queue, workers, their rates, who is slow
     Status(StatusArgs),
+    /// Measure what queue and workers are able to do: empty jobs in a second, bytes in a second
+    Measure(MeasureArgs),
     /// Write sbatch scripts for Slurm: one for the queue, one for an array of workers
     Slurm(SlurmArgs),
 }
@@ -129,6 +131,15 @@ pub(crate) struct StatusArgs {
     /// Print JSON, for scripts
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct MeasureArgs {
+    #[command(flatten)]
+    pub(crate) queue: StatusArgs,
+    /// Empty jobs that the workers are flooded with
+    #[arg(long, default_value = "10000", allow_negative_numbers = true, value_parser = whole(1..=10_000_000))]
+    pub(crate) jobs: u64,
 }
 
 #[derive(Debug, clap::Args)]

@@ -6,10 +6,12 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use hwasp_cluster::{LocalServer, Scripts, Server, ServerOptions, SlurmOptions, status};
+use hwasp_cluster::{LocalServer, Scripts, Server, ServerOptions, SlurmOptions, measure, status};
+use hwasp_experiment::Catalogue;
 
 use super::{stop_on_signal, write_out};
-use crate::args::{ClusterArgs, ClusterCommand, SlurmArgs, StatusArgs, UpArgs};
+use crate::args::{ClusterArgs, ClusterCommand, MeasureArgs, SlurmArgs, StatusArgs, UpArgs};
+use crate::crew::identity;
 use crate::failure::Failure;
 use crate::{log, output, report};
 
@@ -17,11 +19,14 @@ use crate::{log, output, report};
 const LOOK: Duration = Duration::from_millis(200);
 /// How long workers may take to come to their end.
 const END: Duration = Duration::from_mins(5);
+/// How long a measurement waits for a first worker.
+const ALONE: Duration = Duration::from_secs(20);
 
-pub(crate) fn run(args: &ClusterArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ClusterArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     match &args.command {
         ClusterCommand::Up(up) => self::up(up),
         ClusterCommand::Status(args) => tell(args),
+        ClusterCommand::Measure(args) => measured(args, catalogue),
         ClusterCommand::Slurm(args) => slurm(args),
     }
 }
@@ -150,6 +155,17 @@ fn tell(args: &StatusArgs) -> Result<(), Failure> {
         format!("{}\n", serde_json::to_string_pretty(&status)?)
     } else {
         report::cluster::status(&status)
+    };
+    Ok(output::print(&text)?)
+}
+
+fn measured(args: &MeasureArgs, catalogue: &Catalogue) -> Result<(), Failure> {
+    let server = args.queue.connect.server(&args.queue.server);
+    let measured = measure(&server, identity(catalogue)?, args.jobs, ALONE).map_err(Failure::input)?;
+    let text = if args.queue.json {
+        format!("{}\n", serde_json::to_string_pretty(&measured)?)
+    } else {
+        report::cluster::measured(&measured)
     };
     Ok(output::print(&text)?)
 }

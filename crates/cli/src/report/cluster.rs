@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hwasp_cluster::Status;
+use hwasp_cluster::{Measured, Status};
 
 use crate::progress::duration;
 
@@ -54,6 +54,18 @@ pub(crate) fn status(status: &Status) -> String {
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
+}
+
+/// What was measured.
+pub(crate) fn measured(measured: &Measured) -> String {
+    let Measured { workers, slots, job_ms, jobs_per_s, up_mb_per_s, down_mb_per_s } = measured;
+    format!(
+        "{workers} workers, {slots} jobs at once\n  \
+         one empty job      {job_ms:>9.2} ms there and back\n  \
+         many empty jobs    {jobs_per_s:>9.0} in a second\n  \
+         values kept        {up_mb_per_s:>9.0} MB/s\n  \
+         values read        {down_mb_per_s:>9.0} MB/s\n"
+    )
 }
 
 /// Seconds, in what is read at a glance.

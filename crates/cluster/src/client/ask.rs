@@ -206,8 +206,8 @@ impl Asker {
         if let Some((_, kept, need)) = known {
             return Ok((kept, need));
         }
-        let need = Need { class: Class::Run, bytes: pack(&Named(text.clone())).map_err(unanswered)?.into() };
-        let kept = self.keep(&need).await?;
+        let bytes = pack(&Named(text.clone())).map_err(unanswered)?;
+        let (kept, need) = self.put_always(Class::Run, bytes).await?;
         lock(&self.experiments).push((text.clone(), kept.clone(), need.clone()));
         Ok((kept, need))
     }
@@ -222,8 +222,14 @@ impl Asker {
         if bytes.len() <= INLINE {
             return Ok((Payload::Here(bytes), None));
         }
+        let (kept, need) = self.put_always(class, bytes).await?;
+        Ok((Payload::Kept(kept), Some(need)))
+    }
+
+    /// Keeps bytes that a job needs.
+    pub(super) async fn put_always(&self, class: Class, bytes: Vec<u8>) -> Result<(Kept, Need), CollectError> {
         let need = Need { class, bytes: bytes.into() };
-        Ok((Payload::Kept(self.keep(&need).await?), Some(need)))
+        Ok((self.keep(&need).await?, need))
     }
 
     /// A job.

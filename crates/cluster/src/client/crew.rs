@@ -71,3 +71,6 @@ pub(crate) async fn call(store: &Store, asks: Option<&Identity>) -> Result<Vec<C
     cards.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(cards)
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 mod ask;
 mod collector;
 mod crew;
+mod measure;
 mod run;
 mod trainer;
 
@@ -19,6 +20,7 @@ use tokio::sync::oneshot;
 use self::ask::Asker;
 pub(crate) use self::crew::call;
 pub use self::collector::RemoteCollector;
+pub use self::measure::{Measured, measure};
 pub use self::run::RunName;
 use crate::error::ClusterError;
 use crate::identity::Identity;

@@ -17,6 +17,8 @@ use crate::identity::Identity;
 use crate::server::Server;
 use crate::store::Store;
 
+#[cfg(test)]
+pub(crate) use self::card::AtWork;
 pub use self::card::Card;
 
 /// How often it is looked whether it is to end.

@@ -1,5 +1,7 @@
 //! Tells the program the hash of its own sources: two builds of one version may differ, and only equal ones give the same bits.
 
+#![allow(clippy::print_stdout, reason = "cargo reads it")]
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -25,8 +27,8 @@ fn main() -> io::Result<()> {
         hash.update(fs::read(&file)?);
         hash.update([0]);
     }
-    let digits: String = hash.finalize().iter().take(6).map(|byte| format!("{byte:02x}")).collect();
-    println!("cargo::rustc-env=HWASP_SOURCES={digits}");
+    let first = hash.finalize().iter().take(6).fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
+    println!("cargo::rustc-env=HWASP_SOURCES={first:012x}");
     Ok(())
 }
 

@@ -21,7 +21,9 @@ use hwasp_report::play;
 use crate::caller::Caller;
 
 #[cfg(feature = "cluster")]
-pub(crate) use cluster::{ClusterArgs, ClusterCommand, ConnectArgs, MeasureArgs, SlurmArgs, StatusArgs, UpArgs, WorkerArgs};
+pub(crate) use cluster::{
+    ClusterArgs, ClusterCommand, ConnectArgs, MeasureArgs, SlurmArgs, StatusArgs, UpArgs, WorkerArgs,
+};
 pub(crate) use deploy::{
     DeployArgs, DeployCalibrateArgs, DeployCheckArgs, DeployCommand, DeployInitArgs, DeployRunArgs, DeployTrialsArgs,
     RigArgs, ShapeArg,

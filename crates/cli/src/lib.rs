@@ -14,29 +14,23 @@
 mod args;
 mod caller;
 mod commands;
-mod crew;
-mod failure;
-mod given;
 mod grid_progress;
 mod log;
 mod output;
 mod progress;
 mod project;
 mod report;
-mod session;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use hwasp_experiment::Catalogue;
+use hwasp_session::Failure;
 
 use args::{Args, Command, GREETING, LogFormat, LogLevel};
 
 pub use caller::Caller;
-pub use crew::Elsewhere;
 pub use commands::check::checked;
-pub use failure::Failure;
-pub use session::{Session, Training, What};
 
 /// Runs the program: reads its command line, does what it asks for, and says how that went. Experiment files may name what is
 /// in the `catalogue`.

@@ -4,9 +4,10 @@
 //! mark, here and in the log ([`printable_lines`]).
 
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
 
 use hwasp_settings::text::printable_lines;
+
+pub(crate) use hwasp_session::shell;
 
 /// Prints a result. A reader that has gone is no failure; a full disk is.
 pub(crate) fn print(text: &str) -> io::Result<()> {
@@ -21,11 +22,4 @@ pub(crate) fn print(text: &str) -> io::Result<()> {
 /// Tells a remark.
 pub(crate) fn remark(text: &str) {
     tracing::info!("{text}");
-}
-
-/// A path as a shell reads it.
-pub(crate) fn shell(path: &Path) -> String {
-    let path = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
-    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }

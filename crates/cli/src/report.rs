@@ -15,20 +15,7 @@ use hwasp_runs::text::{grouped, quantity};
 use hwasp_runs::{Replay, Summary};
 use hwasp_training::StandInKind;
 use hwasp_training::stats::{Interval, LEAST_VALUES};
-use hwasp_training::{Checkpoint, Evaluation, MeanInterval};
-
-/// The line before a training.
-pub(crate) fn beginning(spec: &Experiment, path: &Path, resumed: bool, from: Option<&Checkpoint>) -> String {
-    let steps = grouped(spec.train.env_steps);
-    let (verb, steps) = match from {
-        Some(_) if !resumed => ("training", format!("further for {steps}")),
-        Some(from) => ("resuming", format!("after {} of {steps}", grouped(from.env_steps))),
-        None if resumed => ("resuming", format!("from the beginning (it has no checkpoint yet) for {steps}")),
-        None => ("training", format!("for {steps}")),
-    };
-    let (name, method, seed) = (&spec.name, spec.method.name(), spec.seed);
-    format!("{verb} {name} ({method}, seed {seed}) {steps} steps into {}", path.display())
-}
+use hwasp_training::{Evaluation, MeanInterval};
 
 /// An iteration that was repeated.
 pub(crate) fn replay(replay: &Replay) -> String {

@@ -65,7 +65,9 @@ impl LocalServer {
         let program = find(options.program.as_deref())?;
         let port = free_port(options)?;
         let folder = &options.store;
-        let unmade = |error: io::Error| start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store");
+        let unmade = |error: io::Error| {
+            start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store")
+        };
         fs::create_dir_all(folder).map_err(unmade)?;
         let folder = &folder.canonicalize().map_err(unmade)?;
         let token = folder.join(Stored::TOKEN);
@@ -73,7 +75,8 @@ impl LocalServer {
             write_private(&token, &format!("{}\n", random()?)).map_err(unmade)?;
         }
         let config = folder.join(Stored::CONFIG);
-        write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?)).map_err(unmade)?;
+        write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?))
+            .map_err(unmade)?;
         let log = File::create(folder.join(Stored::LOG)).map_err(unmade)?;
         let spawned = Command::new(&program)
             .arg("--config")
@@ -105,7 +108,10 @@ impl LocalServer {
                 let text = fs::read_to_string(&log).unwrap_or_default();
                 let fault = text.lines().rev().find(|line| line.contains("[FTL]") || line.contains("[ERR]"));
                 let why = fault.or(text.lines().last()).unwrap_or_default();
-                return Err(start(&format!("it ended with {status}: {why}"), &format!("{} has its log", log.display())));
+                return Err(start(
+                    &format!("it ended with {status}: {why}"),
+                    &format!("{} has its log", log.display()),
+                ));
             }
             if TcpStream::connect_timeout(&address, Duration::from_millis(200)).is_ok() {
                 return Ok(());
@@ -150,7 +156,11 @@ fn start(why: &str, hint: &str) -> ClusterError {
 fn find(named: Option<&Path>) -> Result<PathBuf, ClusterError> {
     if let Some(named) = named {
         let there = named.is_file();
-        return if there { Ok(named.to_owned()) } else { Err(start(&format!("{} is no file", named.display()), INSTALL)) };
+        return if there {
+            Ok(named.to_owned())
+        } else {
+            Err(start(&format!("{} is no file", named.display()), INSTALL))
+        };
     }
     let path = std::env::var_os("PATH").unwrap_or_default();
     let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/bin"));

@@ -31,7 +31,8 @@ pub(crate) fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 
 /// The name of some bytes.
 pub(crate) fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    let first = Sha256::digest(bytes).iter().take(16).fold(0_u128, |number, byte| number << 8 | u128::from(*byte));
+    format!("{first:032x}")
 }
 
 /// Values that leave out fields, or whose form is told by their content, travel as JSON inside.
@@ -121,7 +122,7 @@ pub(crate) enum Task {
         /// A packed [`Archive`]. No part of its name.
         from: Option<Payload>,
     },
-    /// [`Trainer::train`](hwasp_training::collect::Trainer::train).
+    /// [`Trainer::train`](hwasp_training::Trainer::train).
     Training {
         /// A packed [`Checkpoint`]. No part of its name.
         from: Option<Payload>,
@@ -215,11 +216,23 @@ pub(crate) struct News(pub(crate) Vec<Told>);
 /// [`hwasp_training::Event`] as a value.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum Told {
-    Started { env_steps: u64, learner: Vec<String>, terms: Vec<String>, totals: Vec<String> },
+    Started {
+        env_steps: u64,
+        learner: Vec<String>,
+        terms: Vec<String>,
+        totals: Vec<String>,
+    },
     Iteration(Box<MetricsRow>),
     /// A packed [`Checkpoint`].
-    Checkpoint { iteration: u64, state: Payload },
-    Failed { checkpoint: Box<Checkpoint>, batch: Option<Box<Batch>>, what: String },
+    Checkpoint {
+        iteration: u64,
+        state: Payload,
+    },
+    Failed {
+        checkpoint: Box<Checkpoint>,
+        batch: Option<Box<Batch>>,
+        what: String,
+    },
     Evaluating,
     Evaluated(#[serde(with = "as_json")] Box<Evaluation>),
 }

@@ -137,7 +137,10 @@ impl Store {
                 return Err(StoreError::Kept { waited: began.elapsed(), why });
             }
             if !told && pause > PAUSE[0] {
-                tracing::warn!("the server does not keep what is sent ({why}); it is tried again for {}", seconds(patience));
+                tracing::warn!(
+                    "the server does not keep what is sent ({why}); it is tried again for {}",
+                    seconds(patience)
+                );
                 told = true;
             }
             if error.kind() == PublishErrorKind::StreamNotFound {
@@ -205,7 +208,8 @@ impl Store {
         }
         let (mut bytes, mut i) = (BytesMut::new(), 0);
         while (bytes.len() as u64) < kept.bytes {
-            let part = self.last(&subjects::part(run, kept.class.word(), &kept.hash, i)).await?.ok_or(StoreError::Gone)?;
+            let part =
+                self.last(&subjects::part(run, kept.class.word(), &kept.hash, i)).await?.ok_or(StoreError::Gone)?;
             if part.is_empty() {
                 return Err(StoreError::Other);
             }

@@ -99,7 +99,9 @@ impl<T: Number> Bits for Vec<T> {
 
     fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.len() * T::SIZE);
-        self.iter().for_each(|number| number.push(&mut bytes));
+        for number in self {
+            number.push(&mut bytes);
+        }
         bytes
     }
 

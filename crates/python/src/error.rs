@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use hwasp_cli::Failure;
+use hwasp_session::Failure;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hwasp_cli::{What, checked};
+use hwasp_cli::checked;
 use hwasp_experiment::{Layers, load, resolve};
+use hwasp_session::What;
 use hwasp_settings::{Folder, Value};
 use hwasp_training::Assembly;
 use pyo3::exceptions::PyTypeError;

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hwasp_cli::What;
 use hwasp_core::{Executor, Serial, Threads};
 use hwasp_export::{Deployed, Kind, Source, export};
 use hwasp_runs::metrics::{FIXED_COLUMNS, LEARNER, TERM};
 use hwasp_runs::{SUMMARY, SavedRun};
+use hwasp_session::What;
 use hwasp_training::{Assembly, EvaluateError, evaluate, evaluate_native};
 use numpy::PyArray1;
 use pyo3::prelude::*;

@@ -9,8 +9,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use hwasp_cli::{Session, Training, What};
 use hwasp_runs::metrics::{LEARNER, TERM};
+use hwasp_session::{Session, Training, What};
 use hwasp_training::{Event, Observer, ObserverError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -10,8 +10,7 @@ use hwasp_runs::metrics::MetricsTable;
 use hwasp_runs::{
     Keeping, Provenance, Resumed, RunError, RunFolder, SUMMARY, SavedRun, Summary, encode, saved_experiment,
 };
-use hwasp_training::collect::Trainer;
-use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, moved};
+use hwasp_training::{Assembly, Event, Observer, ObserverError, TrainError, Trainer, moved};
 
 use crate::error::CompareError;
 use crate::failure::{Failure, MissingSeed};

@@ -7,19 +7,12 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use hwasp_algos::Archive;
-use hwasp_core::{Batch, EpisodeResult, Episodes, LaneSteps, RolloutError, Serial, bits};
+use hwasp_core::{Batch, EpisodeResult, Episodes, LaneSteps, RolloutError, bits};
 use hwasp_experiment::{Experiment, Faults, Files, Folder, Layers};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-use crate::assemble::Assembly;
-use crate::checkpoint::Checkpoint;
-use crate::error::TrainError;
-use crate::observer::Observer;
-use crate::train::{Trained, train_from};
 
 /// Episodes, and trainings inside of a search, for whoever asks.
 pub trait Collector: Send + Sync {
@@ -46,35 +39,6 @@ pub trait Collector: Send + Sync {
     /// Calls `job(i, collector)` for every `i < count`, in any order and as many at once as it has workers. Each call has a
     /// collector of its own, which answers on one worker.
     fn each(&self, count: usize, job: &(dyn Fn(usize, &dyn Collector) + Sync));
-}
-
-/// Whole trainings, for whoever asks: those of a comparison.
-pub trait Trainer: Sync {
-    /// Trains from the beginning or from a checkpoint, as [`train_from`](crate::train_from) does on one thread: the result has the same
-    /// bits whoever trains.
-    ///
-    /// # Errors
-    /// As those of [`train`](crate::train).
-    fn train(
-        &self,
-        from: Option<&Checkpoint>,
-        assembly: &Assembly,
-        observer: &mut dyn Observer,
-        stop: &AtomicBool,
-    ) -> Result<Trained, TrainError>;
-}
-
-/// The calling thread trains.
-impl Trainer for Serial {
-    fn train(
-        &self,
-        from: Option<&Checkpoint>,
-        assembly: &Assembly,
-        observer: &mut dyn Observer,
-        stop: &AtomicBool,
-    ) -> Result<Trained, TrainError> {
-        train_from(from, assembly, self, observer, stop)
-    }
 }
 
 /// Watches a training inside of a search.

@@ -1,6 +1,5 @@
 //! Whoever answers requests: it puts experiments together again from their texts, and keeps the last of them.
 
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use hwasp_algos::{LearnError, StateError};
@@ -9,7 +8,6 @@ use hwasp_experiment::{Catalogue, resolve};
 use hwasp_problem::World;
 
 use crate::assemble::{AssembleError, Assembly};
-use crate::checkpoint::Checkpoint;
 use crate::collect::{
     Answer, CandidateAnswer, CandidateFailure, CandidateRequest, CollectError, Collector, EpisodeAnswer,
     EpisodesRequest, ExperimentText, Request, Stage, Watch,
@@ -18,7 +16,6 @@ use crate::error::TrainError;
 use crate::gradient::gradient;
 use crate::learned::{Clock, LoopContext};
 use crate::observer::{Event, Observer, ObserverError};
-use crate::train::{Trained, train_from};
 
 /// Experiments, and samplers of one experiment, that are kept for the next request.
 const KEPT: usize = 4;
@@ -49,21 +46,6 @@ impl Worker {
             Request::Results(request) => Answer::Results(self.results(request, &Serial)?),
             Request::Candidate(request) => Answer::Candidate(self.candidate(request, watch)?),
         })
-    }
-
-    /// Trains an experiment on one thread, as [`train_from`](crate::train_from) does.
-    ///
-    /// # Errors
-    /// [`TrainError::Assemble`] where the experiment cannot be set up here; otherwise as those of [`train`](crate::train).
-    pub fn train(
-        &self,
-        experiment: &ExperimentText,
-        from: Option<&Checkpoint>,
-        observer: &mut dyn Observer,
-        stop: &AtomicBool,
-    ) -> Result<Trained, TrainError> {
-        let prepared = self.prepared(experiment)?;
-        train_from(from, &prepared.assembly, &Serial, observer, stop)
     }
 
     fn rows(&self, request: &EpisodesRequest, executor: &dyn Executor) -> Result<Batch, CollectError> {
@@ -127,7 +109,7 @@ impl Worker {
     }
 
     /// The experiment of a request, ready to run. Who comes second while it is put together waits for it.
-    fn prepared(&self, text: &ExperimentText) -> Result<Arc<Prepared>, CollectError> {
+    pub(crate) fn prepared(&self, text: &ExperimentText) -> Result<Arc<Prepared>, CollectError> {
         let mut experiments = self.experiments();
         if let Some(at) = experiments.iter().position(|known| known.text.is(text)) {
             experiments[..=at].rotate_right(1);
@@ -151,9 +133,9 @@ fn setup(error: &dyn std::error::Error) -> CollectError {
 }
 
 /// An experiment, and what runs its episodes.
-struct Prepared {
+pub(crate) struct Prepared {
     text: ExperimentText,
-    assembly: Assembly,
+    pub(crate) assembly: Assembly,
     /// The last one first. Each has policy and idle environments of its own.
     samplers: Mutex<Vec<KeptSampler>>,
 }

@@ -44,7 +44,7 @@ impl ConnectArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct WorkerArgs {
-    /// The queue that it takes jobs from, such as nats://127.0.0.1:4222
+    /// The queue that it takes jobs from, such as `nats://127.0.0.1:4222`
     #[arg(long, value_name = "ADDRESS")]
     pub(crate) server: String,
     #[command(flatten)]
@@ -123,7 +123,7 @@ pub(crate) struct UpArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct StatusArgs {
-    /// The queue, such as nats://127.0.0.1:4222
+    /// The queue, such as `nats://127.0.0.1:4222`
     #[arg(long, value_name = "ADDRESS")]
     pub(crate) server: String,
     #[command(flatten)]

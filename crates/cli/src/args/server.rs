@@ -3,6 +3,8 @@
 #[cfg(feature = "cluster")]
 use std::time::Duration;
 
+use hwasp_session::Elsewhere;
+
 #[cfg(feature = "cluster")]
 use super::ConnectArgs;
 #[cfg(feature = "cluster")]
@@ -11,7 +13,7 @@ use super::parse::seconds;
 /// Workers on other machines, where a command may use them.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ServerArgs {
-    /// Have the work done by the workers of this queue, such as nats://127.0.0.1:4222; the result has the same bits. `hwasp cluster up`
+    /// Have the work done by the workers of this queue, such as `nats://127.0.0.1:4222`; the result has the same bits. `hwasp cluster up`
     /// starts one
     #[cfg(feature = "cluster")]
     #[arg(long, value_name = "ADDRESS", help_heading = "Workers on other machines")]
@@ -23,4 +25,14 @@ pub(crate) struct ServerArgs {
     #[cfg(feature = "cluster")]
     #[arg(long, value_name = "SECONDS", default_value = "600", allow_negative_numbers = true, value_parser = seconds, help_heading = "Workers on other machines")]
     pub(crate) patience: Duration,
+}
+
+impl ServerArgs {
+    /// The workers that are asked for, if any are.
+    pub(crate) fn elsewhere(&self) -> Option<Elsewhere> {
+        #[cfg(feature = "cluster")]
+        return self.server.as_deref().map(|address| Elsewhere::new(self.connect.server(address), self.patience));
+        #[cfg(not(feature = "cluster"))]
+        None
+    }
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use hwasp_experiment::{Catalogue, Folder, Layers, resolve};
 
 use crate::args::InitArgs;
-use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
+use hwasp_session::{Failure, OTHER_FILE};
 
 /// Whether a path names a model, by its ending.
 pub(super) fn is_model(path: &Path) -> bool {

@@ -13,8 +13,8 @@ use hwasp_training::Assembly;
 
 use super::saved_run;
 use crate::args::DesignArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 /// Two designs, SI, and how they differ.
 struct Pair {

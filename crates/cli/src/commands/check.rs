@@ -7,8 +7,8 @@ use hwasp_training::{Assembly, Trial};
 
 use super::experiment;
 use crate::args::ExperimentArgs;
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &ExperimentArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let (spec, assembly) = experiment(&args.experiment, &args.settings, &[], catalogue)?;

@@ -12,10 +12,10 @@ use hwasp_training::STILL;
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
-use crate::crew::{Crew, Elsewhere};
-use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
 use crate::output;
+use hwasp_session::Failure;
+use hwasp_session::{Crew, Elsewhere};
 
 /// Cells that wait for workers at once, at most.
 const MOST_AT_ONCE: usize = 512;
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &CompareArgs, catalogue: &Catalogue) -> Result<(), Failu
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("compare-{name}")));
     let grid = Grid { layers, contenders, seeds: args.first_seed..args.first_seed + args.seeds };
     let stop = stop_on_signal()?;
-    let how = How { threads: args.threads, elsewhere: Elsewhere::asked(&args.server), quiet: args.quiet, stop: &stop };
+    let how = How { threads: args.threads, elsewhere: args.server.elsewhere(), quiet: args.quiet, stop: &stop };
     let ran = run_grid(&grid, catalogue, &folder, args.threshold, &how)?;
     if !args.quiet {
         output::print(&ran.text)?;
@@ -138,7 +138,7 @@ pub(super) fn run_grid(
 
 /// What workers know a comparison by: its folder, and what is trained in it.
 fn names(cells: &[Cell], folder: &Path) -> Result<Vec<String>, Failure> {
-    let texts = cells.iter().map(|cell| cell.experiment_text()).collect::<Result<Vec<_>, _>>()?;
+    let texts = cells.iter().map(Cell::experiment_text).collect::<Result<Vec<_>, _>>()?;
     Ok([vec![std::path::absolute(folder)?.display().to_string()], texts].concat())
 }
 

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::{changes, run_folder};
 use crate::args::DesignArgs;
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Failure;
 
 /// A design and whether it can be built, as programs have it.
 #[derive(Serialize)]

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::{saved_run, stand_in};
 use crate::args::EvalArgs;
-use crate::crew::{Crew, Elsewhere};
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Crew;
+use hwasp_session::Failure;
 
 /// The figures for scripts, and the values of `--set` that they are for.
 #[derive(Serialize)]
@@ -23,7 +23,7 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
     let saved = saved_run(&args.run, &args.set, catalogue)?;
     let params = saved.params().map_err(Failure::input)?;
     let asked = args.held_out.asked(&saved.assembly().experiment().train);
-    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
     let collector = crew.collector(saved.assembly())?;
     let nearer = stand_in(&args.nearer, saved.assembly())?;
     let evaluation = if nearer.is_some() {

@@ -5,8 +5,8 @@ use hwasp_export::{ExportError, Kind, Source, export};
 
 use super::run_folder;
 use crate::args::ExportArgs;
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &ExportArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let source = Source::open(run_folder(&args.run)?, catalogue).map_err(Failure::input)?;

@@ -5,8 +5,8 @@ use hwasp_plot::drawing;
 
 use super::{experiment, write_out};
 use crate::args::GraphArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &GraphArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let (_, assembly) = experiment(&args.experiment.experiment, &args.experiment.settings, &[], catalogue)?;

@@ -8,9 +8,9 @@ use hwasp_settings::text::printable;
 
 use super::begin;
 use crate::args::{InitArgs, TemplateArg};
-use crate::failure::Failure;
 use crate::output;
 use crate::project::{Lock, Project, ProjectError, Template};
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &InitArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     if begin::is_model(&args.what) {

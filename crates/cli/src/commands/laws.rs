@@ -2,8 +2,8 @@
 
 use hwasp_expr::LIBRARY;
 
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run() -> Result<(), Failure> {
     Ok(output::print(LIBRARY)?)

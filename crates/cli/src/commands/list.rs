@@ -5,8 +5,8 @@ use std::io::IsTerminal;
 
 use hwasp_experiment::{Catalogue, load, resolve};
 
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 /// The least room for a description beside its name: below, it stands under it.
 const NARROWEST: usize = 24;

@@ -37,8 +37,8 @@ use hwasp_training::{Assembly, StandInKind};
 
 use crate::args::{LawRateArg, NearerArgs, SettingsArgs};
 use crate::caller::Caller;
-use crate::failure::{Failure, OTHER_FILE};
-use crate::given::{executor, run_folder, saved_run};
+use hwasp_session::{Failure, OTHER_FILE};
+use hwasp_session::{executor, run_folder, saved_run};
 
 /// An experiment with settings on top: those of `--set`, then further options by their flags.
 fn layers(

@@ -11,11 +11,11 @@ use hwasp_workshop::writable;
 
 use super::{saved_run, stop_on_signal, typed};
 use crate::args::PartsArgs;
-use crate::crew::{Crew, Elsewhere};
-use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::session::into_folder;
 use crate::{log, output, report};
+use hwasp_session::Crew;
+use hwasp_session::Failure;
+use hwasp_session::into_folder;
 
 pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let springs = args.catalogue.as_deref().map_or_else(SpringCatalogue::built_in, SpringCatalogue::open);
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure
     let tuning = tuning.map(|tuning| Ok((tuning.folder(&path, provenance)?, tuning))).transpose();
     let tuning = tuning.map_err(|error: RunError| Failure::input(error))?;
 
-    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
     let collector = crew.collector(assembly)?;
     output::remark(&format!("simulating the hand as trained and on its parts, {} episodes each", asked.0));
     let judge = snapped.judge(assembly, &params, asked, &*collector).map_err(failure)?;
@@ -72,7 +72,7 @@ fn tuned(
         }
         TuningFolder::Open(mut folder, from) => {
             log::to_file(&path.join("train.log"));
-            output::remark(&report::beginning(spec, path, false, None));
+            output::remark(&hwasp_session::beginning(spec, path, false, None));
             let stop = stop_on_signal()?;
             let mut progress = Progress::new(&tuning.assembly);
             let ended = into_folder(&tuning.assembly, &mut folder, Some(&from), crew, &mut progress, &stop);

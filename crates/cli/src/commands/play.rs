@@ -9,8 +9,8 @@ use hwasp_runs::SavedRun;
 
 use super::{saved_run, stand_in};
 use crate::args::PlayArgs;
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &PlayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &args.set, catalogue)?;

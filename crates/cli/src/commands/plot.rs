@@ -5,8 +5,8 @@ use hwasp_plot::{PlotError, PlotOptions, curves, plot_options, saved_curve, writ
 
 use super::saved_run;
 use crate::args::PlotArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &PlotArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let runs = args.runs.iter().map(|path| saved_run(path, &[], catalogue)).collect::<Result<Vec<_>, _>>()?;

@@ -5,8 +5,8 @@ use hwasp_runs::replay;
 
 use super::executor;
 use crate::args::ReplayArgs;
-use crate::failure::Failure;
 use crate::{output, report};
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &ReplayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let executor = executor(args.threads)?;

@@ -7,8 +7,8 @@ use hwasp_report::report_in;
 
 use super::{run_folder, write_out};
 use crate::args::ReportArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &ReportArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let folder = run_folder(&args.folder)?;

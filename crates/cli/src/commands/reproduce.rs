@@ -8,9 +8,8 @@ use hwasp_study::{FIGURES, PaperFigure};
 use super::compare::{How, run_grid};
 use super::stop_on_signal;
 use crate::args::ReproduceArgs;
-use crate::crew::Elsewhere;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &ReproduceArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let Some(figure) = PaperFigure::find(&args.figure) else {
@@ -24,7 +23,7 @@ pub(crate) fn run(args: &ReproduceArgs, catalogue: &Catalogue) -> Result<(), Fai
         args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("reproduce-{}{quick}", figure.name)));
     output::remark(&format!("{}: {}", figure.name, figure.about));
     let stop = stop_on_signal()?;
-    let how = How { threads: args.threads, elsewhere: Elsewhere::asked(&args.server), quiet: false, stop: &stop };
+    let how = How { threads: args.threads, elsewhere: args.server.elsewhere(), quiet: false, stop: &stop };
     let mut failed = None;
     for experiment in figure.experiments {
         let grid = figure.grid(experiment, args.quick, catalogue).map_err(Failure::input)?;

@@ -4,8 +4,8 @@ use hwasp_experiment::{Catalogue, reference, schema};
 
 use super::write_out;
 use crate::args::SchemaArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &SchemaArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let text = if args.reference {

@@ -7,10 +7,10 @@ use hwasp_workshop::writable;
 
 use super::saved_run;
 use crate::args::TolerancesArgs;
-use crate::crew::{Crew, Elsewhere};
-use crate::failure::Failure;
 use crate::progress::Counter;
 use crate::{output, report};
+use hwasp_session::Crew;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let saved = saved_run(&args.run, &[], catalogue)?;
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Fa
     let folder = args.out.clone().unwrap_or_else(|| args.run.join("build"));
     // What cannot be written is known before the work begins.
     writable(&folder)?;
-    let crew = Crew::new(args.held_out.threads, Elsewhere::asked(&args.server).as_ref(), &[], catalogue)?;
+    let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
     let collector = crew.collector(assembly)?;
     let mut counter = Counter::new("designs simulated");
     let found = tolerances(assembly, &params, &errors, asked, &*collector, &mut |done, all| counter.tell(done, all));

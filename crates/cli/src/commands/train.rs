@@ -5,11 +5,10 @@ use hwasp_training::Observer;
 
 use super::{layers, stop_on_signal, typed, watch};
 use crate::args::TrainArgs;
-use crate::crew::Elsewhere;
-use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::session::{Session, Training, What};
 use crate::{log, output, report};
+use hwasp_session::Failure;
+use hwasp_session::{Session, Training, What};
 
 pub(crate) fn run(args: &TrainArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     // Where no page can be had, nothing is begun.
@@ -64,7 +63,7 @@ fn asked(args: &TrainArgs, catalogue: &Catalogue) -> Result<Training, Failure> {
     Ok(Training {
         what,
         threads: args.threads,
-        elsewhere: Elsewhere::asked(&args.server),
+        elsewhere: args.server.elsewhere(),
         checkpoint_every: args.checkpoint_every,
         tensorboard: args.tensorboard,
         command_line: typed(),

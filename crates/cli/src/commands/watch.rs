@@ -10,8 +10,8 @@ use hwasp_live::{Options, Server, listen};
 
 use super::stop_on_signal;
 use crate::args::{Place, WatchArgs};
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 /// How often it is looked whether somebody wants it to end.
 const PAUSE: Duration = Duration::from_millis(100);

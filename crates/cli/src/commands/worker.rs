@@ -10,10 +10,10 @@ use hwasp_experiment::Catalogue;
 
 use super::stop_on_signal;
 use crate::args::WorkerArgs;
-use crate::crew::identity;
-use crate::failure::Failure;
 use crate::progress::duration;
 use crate::{log, output};
+use hwasp_session::Failure;
+use hwasp_session::identity;
 
 pub(crate) fn run(args: &WorkerArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     log::with_times();

@@ -413,10 +413,8 @@ impl Asker {
 /// The names of the jobs of a run whose answers are kept.
 async fn answered(store: &Store, run: &str) -> Result<BTreeSet<String>, String> {
     let data = store.data().await?;
-    let mut subjects = data
-        .info_with_subjects(subjects::said(run, "answer", "*"))
-        .await
-        .map_err(|error| error.to_string())?;
+    let mut subjects =
+        data.info_with_subjects(subjects::said(run, "answer", "*")).await.map_err(|error| error.to_string())?;
     let mut names = BTreeSet::new();
     while let Some(subject) = subjects.next().await {
         let (subject, _) = subject.map_err(|error| error.to_string())?;

@@ -1,7 +1,7 @@
 //! Episodes and candidates from workers.
 
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use hwasp_core::{Batch, Executor};
@@ -22,6 +22,8 @@ const BLOCK: f64 = 0.2;
 const BLOCKS: [usize; 2] = [1, 6];
 /// Calls of `each` at once, at most: threads that wait.
 const MOST_AT_ONCE: usize = 512;
+/// Sets of parameters that are remembered.
+const REMEMBERED: usize = 4;
 /// How often it is looked whether somebody wants a candidate to end.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -30,9 +32,16 @@ pub struct RemoteCollector<'a> {
     cluster: &'a Cluster,
     near: LocalCollector<'a>,
     /// Parameters that are kept, those of the last requests.
-    kept: Mutex<Vec<(Arc<[f32]>, Payload, Option<Need>)>>,
+    kept: Mutex<Vec<KeptParams>>,
     /// Seconds of an episode or a step of lanes, as measured; 0 as long as nothing is known.
     pace: Mutex<f64>,
+}
+
+/// Parameters that are kept.
+struct KeptParams {
+    params: Arc<[f32]>,
+    payload: Payload,
+    need: Option<Need>,
 }
 
 fn unanswered(why: impl std::fmt::Display) -> CollectError {
@@ -66,7 +75,12 @@ impl<'a> RemoteCollector<'a> {
     }
 
     /// Asks for a request in parts, and puts the answers together in order.
-    fn parts(&self, request: &EpisodesRequest, task: fn(Block) -> Task, alone: bool) -> Result<Vec<Answer>, CollectError> {
+    fn parts(
+        &self,
+        request: &EpisodesRequest,
+        task: fn(Block) -> Task,
+        alone: bool,
+    ) -> Result<Vec<Answer>, CollectError> {
         let slots = self.cluster.workers().1.max(1);
         let seconds = self.pace() * amount(request) as f64;
         let wanted = if self.pace() > 0.0 { (seconds / BLOCK) as usize } else { 2 * slots };
@@ -90,8 +104,10 @@ impl<'a> RemoteCollector<'a> {
                 let job = asker.job(experiment.clone(), task(block));
                 async move { asker.ask(&job?, needs).await }
             };
-            futures_util::future::join_all(parts.into_iter().map(ask)).await
-                .into_iter().collect::<Result<Vec<_>, CollectError>>()
+            futures_util::future::join_all(parts.into_iter().map(ask))
+                .await
+                .into_iter()
+                .collect::<Result<Vec<_>, CollectError>>()
         };
         let answers = self.cluster.wait(work).unwrap_or(Err(CollectError::Interrupted))?;
         self.measured(answers.iter().map(|reply| reply.seconds).sum(), amount(request));
@@ -107,11 +123,11 @@ impl<'a> RemoteCollector<'a> {
             let put = async move { asker.put(Class::Iteration, bytes).await };
             return self.cluster.wait(put).unwrap_or(Err(CollectError::Interrupted));
         }
-        const REMEMBERED: usize = 4;
-        let known = |kept: &Vec<(Arc<[f32]>, Payload, Option<Need>)>| {
-            // By their bits: what is no number is no other one.
-            let same = |one: &[f32]| one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits());
-            kept.iter().find(|kept| same(&kept.0)).map(|kept| (kept.1.clone(), kept.2.clone()))
+        // By their bits: what is no number is no other one.
+        let same =
+            |one: &[f32]| one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits());
+        let known = |kept: &Vec<KeptParams>| {
+            kept.iter().find(|kept| same(&kept.params)).map(|kept| (kept.payload.clone(), kept.need.clone()))
         };
         if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
             return Ok(found);
@@ -121,7 +137,7 @@ impl<'a> RemoteCollector<'a> {
         let (payload, need) = self.cluster.wait(put).unwrap_or(Err(CollectError::Interrupted))?;
         if let Ok(mut kept) = self.kept.lock() {
             kept.truncate(REMEMBERED - 1);
-            kept.insert(0, (params.into(), payload.clone(), need.clone()));
+            kept.insert(0, KeptParams { params: params.into(), payload: payload.clone(), need: need.clone() });
         }
         Ok((payload, need))
     }

@@ -18,8 +18,8 @@ use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 
 use self::ask::Asker;
-pub(crate) use self::crew::call;
 pub use self::collector::RemoteCollector;
+pub(crate) use self::crew::call;
 pub use self::measure::{Measured, measure};
 pub use self::run::RunName;
 use crate::error::ClusterError;

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bytes::Bytes;
-use hwasp_training::collect::{CollectError, ExperimentText, Trainer};
-use hwasp_training::{AssembleError, Assembly, Checkpoint, Event, FailedIteration, Observer, TrainError, Trained};
+use hwasp_training::collect::{CollectError, ExperimentText};
+use hwasp_training::{
+    AssembleError, Assembly, Checkpoint, Event, FailedIteration, Observer, TrainError, Trained, Trainer,
+};
 use tokio::sync::Notify;
 
 use super::Cluster;
@@ -37,7 +39,7 @@ impl Trainer for Cluster {
         stop: &AtomicBool,
     ) -> Result<Trained, TrainError> {
         let text = ExperimentText::of(assembly.experiment())?;
-        let bytes = from.map(pack).transpose().map_err(|why| CollectError::Unanswered(why))?;
+        let bytes = from.map(pack).transpose().map_err(CollectError::Unanswered)?;
         let (sender, receiver) = std::sync::mpsc::channel();
         let asker = Arc::clone(&self.asker);
         let task = self.handle.spawn(async move {
@@ -51,9 +53,8 @@ impl Trainer for Cluster {
         let budget = assembly.experiment().train.env_steps;
         loop {
             match receiver.recv_timeout(STOP) {
-                Ok(Item::Told(told)) => heard.hear(*told)?,
+                Ok(Item::Told(told)) => heard.hear(&told)?,
                 Ok(Item::Checkpoint(iteration, Some(bytes))) => heard.checkpoint(iteration, &bytes)?,
-                Ok(Item::Checkpoint(_, None)) => {}
                 Ok(Item::End(answer)) => {
                     return match unpack(&answer?).map_err(CollectError::Unanswered)? {
                         TrainingAnswer::Trained(trained) => Ok(*trained),
@@ -65,7 +66,7 @@ impl Trainer for Cluster {
                     task.abort();
                     return Err(TrainError::Interrupted { env_steps: heard.env_steps, budget });
                 }
-                Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
+                Ok(Item::Checkpoint(_, None)) | Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
                 Err(error) => return Err(CollectError::Unanswered(error.to_string()).into()),
             }
         }
@@ -84,8 +85,8 @@ struct Heard<'a> {
 }
 
 impl Heard<'_> {
-    fn hear(&mut self, told: Told) -> Result<(), TrainError> {
-        match &told {
+    fn hear(&mut self, told: &Told) -> Result<(), TrainError> {
+        match told {
             Told::Iteration(row) => {
                 // Whoever took over from an earlier state tells some once more.
                 if row.iteration == self.iteration {

@@ -11,9 +11,7 @@ use async_nats::jetstream::{AckKind, Message};
 use bytes::Bytes;
 use futures_util::StreamExt;
 use hwasp_experiment::Catalogue;
-use hwasp_training::collect::{
-    Answer, CandidateRequest, CollectError, EpisodesRequest, ExperimentText, Request,
-};
+use hwasp_training::collect::{Answer, CandidateRequest, CollectError, EpisodesRequest, ExperimentText, Request};
 use hwasp_training::{Checkpoint, TrainError, Worker};
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 use tokio::task::JoinHandle;
@@ -55,13 +53,16 @@ pub(super) struct Service {
     worker: Mutex<Arc<Worker>>,
     experiments: Mutex<Vec<(String, ExperimentText)>>,
     params: Mutex<Vec<(String, Arc<Vec<f32>>)>>,
-    at_work: Mutex<BTreeMap<u64, (AtWork, Instant, Arc<AtomicBool>)>>,
+    at_work: Mutex<BTreeMap<u64, Running>>,
     draining: Arc<AtomicBool>,
     began: Instant,
     numbers: AtomicU64,
     jobs: AtomicU64,
     busy_ms: AtomicU64,
 }
+
+/// A job at work: what is said of it, since when, and what ends it.
+type Running = (AtWork, Instant, Arc<AtomicBool>);
 
 /// What became of a job.
 enum Outcome {
@@ -143,7 +144,10 @@ impl Service {
                     && let Some(differs) = service.identity.differs(&caller)
                     && !strangers.contains(&caller)
                 {
-                    tracing::warn!(worker = service.name, "somebody asks whose jobs this worker refuses: it has {differs}");
+                    tracing::warn!(
+                        worker = service.name,
+                        "somebody asks whose jobs this worker refuses: it has {differs}"
+                    );
                     strangers.truncate(REMEMBERED - 1);
                     strangers.insert(0, caller);
                 }
@@ -168,10 +172,9 @@ impl Service {
 
     fn card(&self) -> Card {
         let at_work = lock(&self.at_work);
-        let at_work = at_work.values().map(|(at_work, since, _)| AtWork {
-            seconds: since.elapsed().as_secs_f64(),
-            ..at_work.clone()
-        });
+        let at_work = at_work
+            .values()
+            .map(|(at_work, since, _)| AtWork { seconds: since.elapsed().as_secs_f64(), ..at_work.clone() });
         let Served { jobs, seconds } = self.served();
         Card {
             name: self.name.clone(),
@@ -491,9 +494,8 @@ impl Service {
                 // Whichever is further; both are of the same training.
                 let from = kept.into_iter().chain(given).max_by_key(|checkpoint| checkpoint.iteration);
                 let (stop, mut observer) = (Arc::clone(ends), TrainingUploads::new(pace, sender));
-                let done = tokio::task::spawn_blocking(move || {
-                    worker.train(&experiment, from.as_ref(), &mut observer, &stop)
-                });
+                let done =
+                    tokio::task::spawn_blocking(move || worker.train(&experiment, from.as_ref(), &mut observer, &stop));
                 uploads.send(receiver, &waiting).await?;
                 let answer = match done.await {
                     Ok(Ok(trained)) => TrainingAnswer::Trained(Box::new(trained)),
@@ -533,11 +535,7 @@ struct Uploads<'a> {
 
 impl Uploads<'_> {
     /// Sends until the job is over.
-    async fn send(
-        mut self,
-        mut receiver: UnboundedReceiver<Upload>,
-        waiting: &AtomicBool,
-    ) -> Result<(), StoreError> {
+    async fn send(mut self, mut receiver: UnboundedReceiver<Upload>, waiting: &AtomicBool) -> Result<(), StoreError> {
         while let Some(upload) = receiver.recv().await {
             match upload {
                 Upload::News(news) => self.news(news).await?,

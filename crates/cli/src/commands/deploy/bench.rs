@@ -10,7 +10,7 @@ use hwasp_emulators::hand::Planted;
 use hwasp_export::Deployed;
 
 use crate::caller::Caller;
-use crate::failure::{Failure, OTHER_FILE};
+use hwasp_session::{Failure, OTHER_FILE};
 
 pub(crate) fn run(settings: &Path) -> Result<(), Failure> {
     // Ctrl-C is for whoever drives: this process ends with its input.

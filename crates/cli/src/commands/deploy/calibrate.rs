@@ -17,8 +17,8 @@ use super::super::writable;
 use super::answers::Answers;
 use super::{deployed, interrupts, rig};
 use crate::args::DeployCalibrateArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 /// What is taken to be wound when it begins, m: there is room to pay out and to wind.
 const MIDDLE: f64 = 0.020;

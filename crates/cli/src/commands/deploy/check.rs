@@ -6,8 +6,8 @@ use hwasp_deploy::check::{Mark, check};
 
 use super::rig;
 use crate::args::DeployCheckArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &DeployCheckArgs) -> Result<(), Failure> {
     let looks = check(&rig(&args.rig)?);

@@ -10,9 +10,9 @@ use hwasp_experiment::Catalogue;
 use super::super::{executor, writable, write_out};
 use super::replay::of_log;
 use crate::args::DeployIdentifyArgs;
-use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
 use crate::progress::Counter;
+use hwasp_session::{Failure, OTHER_FILE};
 
 /// Generations of the search, at most.
 const GENERATIONS: u32 = 150;

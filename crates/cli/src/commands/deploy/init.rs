@@ -6,8 +6,8 @@ use std::io::{ErrorKind, Write};
 use hwasp_deploy::rig::template;
 
 use crate::args::DeployInitArgs;
-use crate::failure::{Failure, OTHER_FILE};
 use crate::output;
+use hwasp_session::{Failure, OTHER_FILE};
 
 pub(crate) fn run(args: &DeployInitArgs) -> Result<(), Failure> {
     let path = args.out.display();

@@ -26,7 +26,7 @@ use hwasp_export::Deployed;
 
 use super::run_folder;
 use crate::args::{DeployArgs, DeployCommand, RigArgs};
-use crate::failure::Failure;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &DeployArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     match &args.command {

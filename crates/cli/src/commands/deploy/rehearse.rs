@@ -13,8 +13,8 @@ use hwasp_experiment::Catalogue;
 use super::answers::Answers;
 use super::{bench, deployed, interrupts};
 use crate::args::DeployRehearseArgs;
-use crate::failure::{Failure, OTHER_FILE};
 use crate::output::{self, shell};
+use hwasp_session::{Failure, OTHER_FILE};
 
 /// The last held-out object that can be asked for.
 const LAST: u64 = 1_000_000;

@@ -11,8 +11,8 @@ use hwasp_export::Deployed;
 use super::super::write_out;
 use super::deployed;
 use crate::args::DeployReplayArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &DeployReplayArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let logged = read(&args.log).map_err(Failure::input)?;

@@ -20,8 +20,8 @@ use hwasp_export::Deployed;
 use super::answers::Answers;
 use super::{deployed, interrupts, rig};
 use crate::args::DeployRunArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &DeployRunArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let deployed = deployed(&args.run, catalogue)?;

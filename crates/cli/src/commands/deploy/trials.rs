@@ -8,8 +8,8 @@ use hwasp_experiment::Catalogue;
 
 use super::super::run_folder;
 use crate::args::DeployTrialsArgs;
-use crate::failure::Failure;
 use crate::output;
+use hwasp_session::Failure;
 
 pub(crate) fn run(args: &DeployTrialsArgs, catalogue: &Catalogue) -> Result<(), Failure> {
     let trials = match (args.shape, args.held, &args.run) {

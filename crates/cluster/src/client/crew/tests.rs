@@ -35,5 +35,5 @@ fn only_those_who_give_the_same_bits_are_counted() {
     assert_eq!((crew.workers, crew.slots, crew.idle), (1, 4, 3));
     // What somebody is at who takes no further jobs is not lost.
     assert_eq!(crew.at_work.iter().map(String::as_str).collect::<Vec<_>>(), ["one", "three", "two"]);
-    assert_eq!(crew.refused, [("c".to_owned(), "engine none instead of MuJoCo 0.1".to_owned())]);
+    assert_eq!(crew.refused, [("c".to_owned(), "engine MuJoCo 0.1 instead of none".to_owned())]);
 }

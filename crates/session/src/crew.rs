@@ -8,10 +8,9 @@ use std::time::Duration;
 use hwasp_cluster::{Cluster, Identity, RunName, Server};
 use hwasp_core::{Executor, Serial};
 use hwasp_experiment::Catalogue;
-use hwasp_training::collect::{CollectError, Trainer};
-use hwasp_training::{Assembly, Collector, Event, LocalCollector, Observer, ObserverError};
+use hwasp_training::collect::CollectError;
+use hwasp_training::{Assembly, Collector, Event, LocalCollector, Observer, ObserverError, Trainer};
 
-use crate::args::ServerArgs;
 use crate::failure::Failure;
 use crate::given::executor;
 
@@ -25,22 +24,15 @@ pub struct Elsewhere {
 }
 
 impl Elsewhere {
-    /// Those that arguments name, if they do.
+    /// Those of a server. `patience`: how long none of them may be heard of.
     #[cfg(feature = "cluster")]
-    pub(crate) fn asked(args: &ServerArgs) -> Option<Self> {
-        let server = args.connect.server(args.server.as_deref()?);
-        Some(Self { server, patience: args.patience })
-    }
-
-    /// A program without the feature `cluster` has no such arguments.
-    #[cfg(not(feature = "cluster"))]
-    pub(crate) fn asked(_: &ServerArgs) -> Option<Self> {
-        None
+    pub fn new(server: Server, patience: Duration) -> Self {
+        Self { server, patience }
     }
 }
 
 /// Who runs episodes and trainings. What is asked for elsewhere has the same bits.
-pub(crate) struct Crew {
+pub struct Crew {
     executor: Box<dyn Executor>,
     #[cfg(feature = "cluster")]
     cluster: Option<Cluster>,
@@ -49,7 +41,7 @@ pub(crate) struct Crew {
 impl Crew {
     /// Threads, and the workers that were asked for. `run`: what stays the same where a run is resumed, so that what was done before
     /// is found; nothing where nobody will go on with it.
-    pub(crate) fn new(
+    pub fn new(
         threads: NonZeroUsize,
         elsewhere: Option<&Elsewhere>,
         run: &[String],
@@ -66,11 +58,11 @@ impl Crew {
             let cluster = elsewhere.map(connect).transpose()?;
             if let Some(cluster) = &cluster {
                 let (workers, slots) = cluster.workers();
-                crate::output::remark(&match workers {
-                    0 => "no worker is there yet; they may come at any time".to_owned(),
-                    1 => format!("one worker, {slots} jobs at once"),
-                    _ => format!("{workers} workers, {slots} jobs at once"),
-                });
+                match workers {
+                    0 => tracing::info!("no worker is there yet; they may come at any time"),
+                    1 => tracing::info!("one worker, {slots} jobs at once"),
+                    _ => tracing::info!("{workers} workers, {slots} jobs at once"),
+                }
             }
             Ok(Self { executor, cluster })
         }
@@ -82,12 +74,12 @@ impl Crew {
     }
 
     /// Threads of this process.
-    pub(crate) fn executor(&self) -> &dyn Executor {
+    pub fn executor(&self) -> &dyn Executor {
         &*self.executor
     }
 
     /// What answers requests.
-    pub(crate) fn collector<'a>(&'a self, assembly: &Assembly) -> Result<Box<dyn Collector + 'a>, CollectError> {
+    pub fn collector<'a>(&'a self, assembly: &Assembly) -> Result<Box<dyn Collector + 'a>, CollectError> {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = &self.cluster {
             return Ok(Box::new(cluster.collector(assembly, self.executor())?));
@@ -96,7 +88,7 @@ impl Crew {
     }
 
     /// Who trains whole experiments, a thread each.
-    pub(crate) fn trainer(&self) -> &dyn Trainer {
+    pub fn trainer(&self) -> &dyn Trainer {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = &self.cluster {
             return cluster;
@@ -105,7 +97,7 @@ impl Crew {
     }
 
     /// Whether workers elsewhere do the work.
-    pub(crate) fn is_elsewhere(&self) -> bool {
+    pub fn is_elsewhere(&self) -> bool {
         #[cfg(feature = "cluster")]
         return self.cluster.is_some();
         #[cfg(not(feature = "cluster"))]
@@ -113,7 +105,7 @@ impl Crew {
     }
 
     /// The work came to its end, and nobody needs what workers kept of it. Otherwise whoever goes on finds it.
-    pub(crate) fn finish(&self) {
+    pub fn finish(&self) {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = &self.cluster {
             cluster.finish();
@@ -121,7 +113,7 @@ impl Crew {
     }
 
     /// The work ended before its end: nobody is to go on with it until it is asked for again.
-    pub(crate) fn stop(&self) {
+    pub fn stop(&self) {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = &self.cluster {
             cluster.stop();
@@ -143,7 +135,7 @@ impl Observer for &Crew {
 
 /// What the bits of this program depend on.
 #[cfg(feature = "cluster")]
-pub(crate) fn identity(catalogue: &Catalogue) -> Result<Identity, Failure> {
+pub fn identity(catalogue: &Catalogue) -> Result<Identity, Failure> {
     #[cfg(feature = "mujoco")]
     let engine = Some(hwasp_mujoco::engine::version());
     #[cfg(not(feature = "mujoco"))]

@@ -17,7 +17,7 @@ use hwasp_training::{
 use crate::crew::{Crew, Elsewhere};
 use crate::failure::Failure;
 use crate::given::{run_folder, saved_run};
-use crate::{output, report};
+use crate::words::{beginning as beginning_line, shell};
 
 /// A training that is asked for.
 #[derive(Clone, Debug)]
@@ -125,7 +125,7 @@ impl Session {
 
     /// A line that says what begins.
     pub fn opening(&self) -> String {
-        report::beginning(self.assembly.experiment(), self.path(), self.resumed, self.found.checkpoint.as_ref())
+        beginning_line(self.assembly.experiment(), self.path(), self.resumed, self.found.checkpoint.as_ref())
     }
 
     /// Tells of checkpoints that are damaged, where it goes on from an older one.
@@ -141,19 +141,12 @@ impl Session {
         let mut observers: Vec<&mut dyn Observer> = Vec::new();
         observers.extend(self.board.as_mut().map(|board| board as &mut dyn Observer));
         observers.push(watching);
-        into_folder(
-            &self.assembly,
-            &mut self.folder,
-            self.found.checkpoint.as_ref(),
-            &self.crew,
-            &mut observers,
-            stop,
-        )
+        into_folder(&self.assembly, &mut self.folder, self.found.checkpoint.as_ref(), &self.crew, &mut observers, stop)
     }
 }
 
 /// Trains into a folder while others watch, and finishes it.
-pub(crate) fn into_folder(
+pub fn into_folder(
     assembly: &Assembly,
     folder: &mut RunFolder,
     from: Option<&Checkpoint>,
@@ -173,7 +166,7 @@ pub(crate) fn into_folder(
     if !moved(assembly, from, &trained.params) {
         tracing::warn!("the training changed nothing: {STILL}");
     }
-    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", output::shell(folder.path()));
+    let resume = format!("`hwasp train --resume {}` goes on from the last checkpoint", shell(folder.path()));
     let finished = folder.finish(assembly, &trained, &curves_svg);
     let summary = finished.map_err(|error| Failure::from(error).hint(&format!("free the way; {resume}")))?;
     crew.finish();
@@ -219,7 +212,7 @@ fn unwritten(error: &TrainError) -> Option<&RunError> {
 
 /// What a training that did not come to its end leaves, and the way on.
 fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
-    let run = output::shell(folder.path());
+    let run = shell(folder.path());
     let resume = format!("`hwasp train --resume {run}` goes on");
     if let Err(unsaved) = folder.settle() {
         let hint = format!("the last checkpoint is as it was; with the way free, {resume} from there");
@@ -228,9 +221,7 @@ fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
     match &error {
         TrainError::Interrupted { .. } => Failure::interrupted(error).hint(&format!("{resume} from there")),
         _ => match (folder.fault(), unwritten(&error)) {
-            (Some(fault), _) => {
-                Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", output::shell(fault)))
-            }
+            (Some(fault), _) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", shell(fault))),
             (None, Some(_)) => Failure::from(error).hint(&format!("with the way free, {resume}")),
             (None, None) => error.into(),
         },

@@ -10,12 +10,12 @@ use hwasp_runs::SavedRun;
 use crate::failure::Failure;
 
 /// The run that was written to a folder.
-pub(crate) fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
+pub fn saved_run(path: &Path, set: &[String], catalogue: &Catalogue) -> Result<SavedRun, Failure> {
     SavedRun::open_with(run_folder(path)?, set, catalogue).map_err(Failure::input)
 }
 
 /// The folder of a run, if there is a folder at all.
-pub(crate) fn run_folder(path: &Path) -> Result<&Path, Failure> {
+pub fn run_folder(path: &Path) -> Result<&Path, Failure> {
     if path.is_dir() {
         return Ok(path);
     }
@@ -25,6 +25,6 @@ pub(crate) fn run_folder(path: &Path) -> Result<&Path, Failure> {
 }
 
 /// So many threads.
-pub(crate) fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
+pub fn executor(threads: NonZeroUsize) -> Result<Box<dyn Executor>, Failure> {
     if threads.get() == 1 { Ok(Box::new(Serial)) } else { Ok(Box::new(Threads::new(threads.get())?)) }
 }

@@ -10,12 +10,12 @@ use hwasp_runs::{PolicyFileError, ReplayError, RunError};
 use hwasp_study::CompareError;
 use hwasp_workshop::WorkshopError;
 
-use crate::output::shell;
+use crate::words::shell;
 
 /// The file of a run folder that makes it one.
 const EXPERIMENT: &str = "experiment.toml";
 /// The way out where a picture cannot be written.
-pub(crate) const OTHER_FILE: &str = "name a file in a folder that is there and may be written, with --out";
+pub const OTHER_FILE: &str = "name a file in a folder that is there and may be written, with --out";
 
 /// The way out where a folder cannot be written.
 const OTHER_FOLDER: &str = "name another folder with --out";

@@ -68,9 +68,8 @@ async fn ask(server: &Server) -> Result<Status, ClusterError> {
     let store = Store::open(client, &server.address).await?;
     let cards = call(&store, None).await.map_err(queue)?;
     let jobs = store.jobs().await.map_err(queue)?;
-    let began = std::time::Instant::now();
     let messages = jobs.get_info().await.map_err(|error| queue(error.to_string()))?.state.messages;
-    let round_trip_ms = began.elapsed().as_secs_f64() * 1e3;
+    let round_trip_ms = store.round_trip.as_secs_f64() * 1e3;
     let mut at_work = 0;
     let digests: std::collections::BTreeSet<String> = cards.iter().map(|card| card.identity.digest()).collect();
     for digest in digests {

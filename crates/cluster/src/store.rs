@@ -32,7 +32,8 @@ const AT_WORK: i64 = 1 << 20;
 pub(crate) struct Store {
     pub(crate) client: Client,
     pub(crate) context: Context,
-    address: String,
+    /// Time that a request took when it was opened.
+    pub(crate) round_trip: Duration,
 }
 
 /// Why something is not kept.
@@ -54,8 +55,12 @@ impl Store {
     /// Makes the streams where they are not there yet.
     pub(crate) async fn open(client: Client, address: &str) -> Result<Self, ClusterError> {
         let context = ContextBuilder::new().ack_timeout(Duration::from_secs(5)).build(client.clone());
-        let store = Self { client, context, address: address.to_owned() };
-        store.ensure().await.map_err(|why| ClusterError::Queue { address: store.address.clone(), why })?;
+        let mut store = Self { client, context, round_trip: Duration::ZERO };
+        let queue = |why| ClusterError::Queue { address: address.to_owned(), why };
+        store.ensure().await.map_err(queue)?;
+        let began = Instant::now();
+        store.ensure().await.map_err(queue)?;
+        store.round_trip = began.elapsed() / 2;
         Ok(store)
     }
 

@@ -190,11 +190,25 @@ impl EpisodesRequest {
     pub fn split(&self, parts: usize) -> Vec<Self> {
         let Range { start, end } = self.episodes.indices;
         let each = (end - start).div_ceil(parts.max(1) as u64).max(1);
-        let part = |first: u64| {
-            let episodes = Episodes { indices: first..(first + each).min(end), ..self.episodes.clone() };
-            Self { episodes, ..self.clone() }
-        };
-        (start..end).step_by(each as usize).map(part).collect()
+        (start..end).step_by(each as usize).map(|first| self.part(first..(first + each).min(end))).collect()
+    }
+
+    /// Requests of consecutive episodes for so many workers who take one after the other: large ones first, and at the end such small
+    /// ones, though of `least` episodes, that all workers end together.
+    pub fn shared_by(&self, workers: usize, least: u64) -> Vec<Self> {
+        let Range { start, end } = self.episodes.indices;
+        let (mut parts, mut first) = (Vec::new(), start);
+        while first < end {
+            let count = (end - first).div_ceil(2 * workers.max(1) as u64).max(least).min(end - first);
+            parts.push(self.part(first..first + count));
+            first += count;
+        }
+        parts
+    }
+
+    /// The same for some of its episodes.
+    fn part(&self, indices: Range<u64>) -> Self {
+        Self { episodes: Episodes { indices, ..self.episodes.clone() }, ..self.clone() }
     }
 }
 

@@ -258,3 +258,28 @@ fn a_request_is_split_into_consecutive_parts() {
     assert_eq!(split(4, 0), split(4, 1));
     assert!(split(0, 3).is_empty());
 }
+
+/// The last ones are small, so that nobody waits long for somebody else; no episode is left out or run twice.
+#[test]
+fn workers_share_a_request_and_end_together() {
+    let shared = |count: u64, workers: usize, least: u64| {
+        let request = EpisodesRequest {
+            experiment: ExperimentText::from(String::new()),
+            stage: Stage::Training,
+            params: vec![],
+            episodes: held_out(1, 5..5 + count),
+            steps: None,
+            lanes: None,
+        };
+        let parts = request.shared_by(workers, least);
+        let ends: Vec<u64> = parts.iter().map(|part| part.episodes.indices.end).collect();
+        let starts: Vec<u64> = parts.iter().map(|part| part.episodes.indices.start).collect();
+        assert_eq!(starts[1..], ends[..ends.len() - 1]);
+        assert_eq!((starts[0], ends[ends.len() - 1]), (5, 5 + count));
+        parts.iter().map(|part| part.episodes.indices.end - part.episodes.indices.start).collect::<Vec<_>>()
+    };
+    assert_eq!(shared(20, 2, 1), [5, 4, 3, 2, 2, 1, 1, 1, 1]);
+    assert_eq!(shared(20, 2, 3), [5, 4, 3, 3, 3, 2]);
+    assert_eq!(shared(3, 1000, 1), [1, 1, 1]);
+    assert_eq!(shared(7, 0, 1), [4, 2, 1]);
+}

@@ -29,10 +29,15 @@ pub(crate) struct ServerArgs {
 
 impl ServerArgs {
     /// The workers that are asked for, if any are.
+    #[cfg(feature = "cluster")]
     pub(crate) fn elsewhere(&self) -> Option<Elsewhere> {
-        #[cfg(feature = "cluster")]
-        return self.server.as_deref().map(|address| Elsewhere::new(self.connect.server(address), self.patience));
-        #[cfg(not(feature = "cluster"))]
+        self.server.as_deref().map(|address| Elsewhere::new(self.connect.server(address), self.patience))
+    }
+
+    /// A program without the feature `cluster` has no such arguments.
+    #[cfg(not(feature = "cluster"))]
+    #[allow(clippy::unused_self)] // as it is with the feature
+    pub(crate) fn elsewhere(&self) -> Option<Elsewhere> {
         None
     }
 }

@@ -16,10 +16,8 @@ use crate::message::{Block, Class, Content, Params, Payload, Task, pack, unpack}
 
 /// Work of less time than this is done here: the way to a worker and back takes as long. Seconds.
 const NOT_WORTH_IT: f64 = 0.004;
-/// A block of episodes should take so long, s: short enough that workers end together, long enough that the way does not count.
-const BLOCK: f64 = 0.2;
-/// Blocks for each job that workers do at once, at least and at most.
-const BLOCKS: [usize; 2] = [1, 6];
+/// A job of episodes should take so long at least, s: then the way there and back does not count.
+const BLOCK: f64 = 0.03;
 /// Calls of `each` at once, at most: threads that wait.
 const MOST_AT_ONCE: usize = 512;
 /// Sets of parameters that are remembered.
@@ -81,11 +79,10 @@ impl<'a> RemoteCollector<'a> {
         task: fn(Block) -> Task,
         alone: bool,
     ) -> Result<Vec<Answer>, CollectError> {
-        let slots = self.cluster.workers().1.max(1);
-        let seconds = self.pace() * amount(request) as f64;
-        let wanted = if self.pace() > 0.0 { (seconds / BLOCK) as usize } else { 2 * slots };
-        let count = if alone { 1 } else { wanted.clamp(BLOCKS[0] * slots, BLOCKS[1] * slots) };
-        let parts = request.split(count);
+        let slots = self.cluster.workers().1;
+        let episode = self.pace() * amount(request) as f64 / (request.episodes.indices.clone().count().max(1) as f64);
+        let least = if episode > 0.0 { (BLOCK / episode).ceil() as u64 } else { 1 };
+        let parts = if alone { vec![request.clone()] } else { request.shared_by(slots, least) };
         let (params, need) = self.params(&request.params, parts.len())?;
         let asker = Arc::clone(&self.cluster.asker);
         let text = request.experiment.clone();

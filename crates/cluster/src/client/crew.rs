@@ -11,8 +11,8 @@ use crate::store::Store;
 use crate::subjects;
 use crate::worker::Card;
 
-/// How long answers to a call are waited for after the last one.
-pub(crate) const HEARD: Duration = Duration::from_millis(150);
+/// How long answers to a call are waited for after the last one: so many round trips, within limits.
+const GAP: (u32, [Duration; 2]) = (20, [Duration::from_millis(25), Duration::from_secs(1)]);
 /// Cards that are read, at most.
 const MOST_CARDS: usize = 100_000;
 
@@ -57,14 +57,15 @@ pub(crate) async fn call(store: &Store, asks: Option<&Identity>) -> Result<Vec<C
     let sent = store.client.publish_with_reply(subjects::CALL, inbox, question.into()).await;
     sent.map_err(|error| error.to_string())?;
     let (mut cards, began) = (Vec::new(), Instant::now());
-    while let Ok(Some(answer)) = tokio::time::timeout(HEARD, answers.next()).await {
+    let gap = (GAP.0 * store.round_trip).clamp(GAP.1[0], GAP.1[1]);
+    while let Ok(Some(answer)) = tokio::time::timeout(gap, answers.next()).await {
         // Where nobody listens, the server answers itself, with nothing.
         if let Ok(card) = unpack::<Card>(&answer.payload) {
             cards.push(card);
         } else if answer.payload.is_empty() {
             break;
         }
-        if cards.len() >= MOST_CARDS || began.elapsed() > 40 * HEARD {
+        if cards.len() >= MOST_CARDS || began.elapsed() > 10 * GAP.1[1] {
             break;
         }
     }

@@ -33,8 +33,8 @@ use hwasp_experiment::Catalogue;
 use args::{Args, Command, GREETING, LogFormat, LogLevel};
 
 pub use caller::Caller;
-pub use crew::Elsewhere;
 pub use commands::check::checked;
+pub use crew::Elsewhere;
 pub use failure::Failure;
 pub use session::{Session, Training, What};
 

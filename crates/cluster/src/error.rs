@@ -38,7 +38,9 @@ pub enum ClusterError {
         hint: &'static str,
     },
     /// The server does not do what is asked of it.
-    #[error("{address} does not answer as a queue should: {why}\n  = hint: it needs JetStream, NATS 2.9 or later; `hwasp cluster up` starts one")]
+    #[error(
+        "{address} does not answer as a queue should: {why}\n  = hint: it needs JetStream, NATS 2.9 or later; `hwasp cluster up` starts one"
+    )]
     Queue {
         /// The server.
         address: String,

@@ -45,6 +45,8 @@ impl Stored {
     pub const TOKEN: &'static str = "token";
     /// What it was started with.
     pub const CONFIG: &'static str = "nats.conf";
+    /// Who has it open has the folder.
+    pub const LOCK: &'static str = "lock";
     /// Its log.
     pub const LOG: &'static str = "server.log";
 }
@@ -65,23 +67,29 @@ impl LocalServer {
         let program = find(options.program.as_deref())?;
         let port = free_port(options)?;
         let folder = &options.store;
-        let unmade = |error: io::Error| start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store");
+        let unmade = |error: io::Error| {
+            start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store")
+        };
         fs::create_dir_all(folder).map_err(unmade)?;
         let folder = &folder.canonicalize().map_err(unmade)?;
+        // The server holds it as its input: as long as it lives, even if we do not, no other one takes the same folder.
+        let lock = File::create(folder.join(Stored::LOCK)).map_err(unmade)?;
+        lock.try_lock().map_err(|_| {
+            start(
+                &format!("another one runs with {} already", folder.display()),
+                "use that one, or end it, or name another folder with --store",
+            )
+        })?;
         let token = folder.join(Stored::TOKEN);
         if !token.exists() {
             write_private(&token, &format!("{}\n", random()?)).map_err(unmade)?;
         }
         let config = folder.join(Stored::CONFIG);
-        write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?)).map_err(unmade)?;
+        write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?))
+            .map_err(unmade)?;
         let log = File::create(folder.join(Stored::LOG)).map_err(unmade)?;
-        let spawned = Command::new(&program)
-            .arg("--config")
-            .arg(&config)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(log)
-            .spawn();
+        let spawned =
+            Command::new(&program).arg("--config").arg(&config).stdin(lock).stdout(Stdio::null()).stderr(log).spawn();
         let child = spawned.map_err(|error| start(&format!("{}: {error}", program.display()), INSTALL))?;
         let address = SocketAddr::new(options.bind, port);
         let scheme = if options.certificate.is_some() { "tls" } else { "nats" };
@@ -105,7 +113,10 @@ impl LocalServer {
                 let text = fs::read_to_string(&log).unwrap_or_default();
                 let fault = text.lines().rev().find(|line| line.contains("[FTL]") || line.contains("[ERR]"));
                 let why = fault.or(text.lines().last()).unwrap_or_default();
-                return Err(start(&format!("it ended with {status}: {why}"), &format!("{} has its log", log.display())));
+                return Err(start(
+                    &format!("it ended with {status}: {why}"),
+                    &format!("{} has its log", log.display()),
+                ));
             }
             if TcpStream::connect_timeout(&address, Duration::from_millis(200)).is_ok() {
                 return Ok(());
@@ -150,7 +161,11 @@ fn start(why: &str, hint: &str) -> ClusterError {
 fn find(named: Option<&Path>) -> Result<PathBuf, ClusterError> {
     if let Some(named) = named {
         let there = named.is_file();
-        return if there { Ok(named.to_owned()) } else { Err(start(&format!("{} is no file", named.display()), INSTALL)) };
+        return if there {
+            Ok(named.to_owned())
+        } else {
+            Err(start(&format!("{} is no file", named.display()), INSTALL))
+        };
     }
     let path = std::env::var_os("PATH").unwrap_or_default();
     let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/bin"));

@@ -22,8 +22,10 @@ pub(crate) fn pack<T: Serialize>(value: &T) -> Result<Vec<u8>, String> {
 /// Unpacks one.
 pub(crate) fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     let (size, rest) = lz4_flex::block::uncompressed_size(bytes).map_err(|error| error.to_string())?;
-    if size > LARGEST {
-        return Err(format!("{size} bytes are more than the {LARGEST} that may be"));
+    // No form of compression that is used here makes more than 255 bytes of one.
+    let most = LARGEST.min(rest.len().saturating_mul(255));
+    if size > most {
+        return Err(format!("{size} bytes are more than the {most} that may be"));
     }
     let bytes = lz4_flex::decompress(rest, size).map_err(|error| error.to_string())?;
     postcard::from_bytes(&bytes).map_err(|error| error.to_string())
@@ -215,11 +217,23 @@ pub(crate) struct News(pub(crate) Vec<Told>);
 /// [`hwasp_training::Event`] as a value.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum Told {
-    Started { env_steps: u64, learner: Vec<String>, terms: Vec<String>, totals: Vec<String> },
+    Started {
+        env_steps: u64,
+        learner: Vec<String>,
+        terms: Vec<String>,
+        totals: Vec<String>,
+    },
     Iteration(Box<MetricsRow>),
     /// A packed [`Checkpoint`].
-    Checkpoint { iteration: u64, state: Payload },
-    Failed { checkpoint: Box<Checkpoint>, batch: Option<Box<Batch>>, what: String },
+    Checkpoint {
+        iteration: u64,
+        state: Payload,
+    },
+    Failed {
+        checkpoint: Box<Checkpoint>,
+        batch: Option<Box<Batch>>,
+        what: String,
+    },
     Evaluating,
     Evaluated(#[serde(with = "as_json")] Box<Evaluation>),
 }

@@ -85,7 +85,9 @@ impl Server {
             return Err(fault("it begins with nats:// or tls://"));
         }
         if rest.contains('@') {
-            return Err(fault("a token in it would be seen in lists of processes; put it into a file, for --token-file"));
+            return Err(fault(
+                "a token in it would be seen in lists of processes; put it into a file, for --token-file",
+            ));
         }
         let host = rest.rsplit_once(':').map_or(rest, |(host, _)| host);
         if host.is_empty() || rest.contains(['/', ' ']) {
@@ -143,7 +145,9 @@ mod tests {
         assert_eq!(host("nats://127.0.0.1:4222").unwrap(), "127.0.0.1");
         assert_eq!(host("tls://queue.lab.example").unwrap(), "queue.lab.example");
         assert_eq!(host("nats://[::1]:4222").unwrap(), "::1");
-        for wrong in ["127.0.0.1:4222", "http://host", "nats://", "nats://:4222", "nats://secret@host:4222", "nats://a b"] {
+        for wrong in
+            ["127.0.0.1:4222", "http://host", "nats://", "nats://:4222", "nats://secret@host:4222", "nats://a b"]
+        {
             assert!(host(wrong).is_err(), "{wrong}");
         }
     }

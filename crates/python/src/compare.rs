@@ -60,7 +60,9 @@ pub(crate) fn compare(
         let cells = grid.cells(&out, &catalogue()).map_err(Wrong::input)?;
         let first = cells.first().ok_or_else(|| Wrong::input("there is nothing to compare: name methods and seeds"))?;
         let executor = Threads::new(threads).map_err(Wrong::failed)?;
-        let outcome = run(&cells, &executor, Work { command_line: &typed, watch: &Quiet, trainer: &Serial, stop: &stopped }).map_err(Wrong::input)?;
+        let outcome =
+            run(&cells, &executor, Work { command_line: &typed, watch: &Quiet, trainer: &Serial, stop: &stopped })
+                .map_err(Wrong::input)?;
         let comparison = Comparison::new(&first.experiment(), &outcome, threshold).map_err(Wrong::failed)?;
         comparison.write(&out, &outcome.finished, &first.plot_options()).map_err(Wrong::failed)?;
         if outcome.unfinished() > 0 && !stopped.load(Ordering::Relaxed) {

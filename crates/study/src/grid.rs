@@ -83,11 +83,7 @@ fn others(cells: &[Cell]) -> Vec<String> {
 /// Runs what is not finished yet: as many cells at once as the executor has workers. A cell that failed is remembered and not tried again.
 /// A cell that another process trains is waited for, after all that nobody trains. When `stop` is set, cells under way are
 /// left as they are, to be resumed.
-pub fn run(
-    cells: &[Cell],
-    executor: &dyn Executor,
-    work: Work<'_>,
-) -> Result<Outcome, CompareError> {
+pub fn run(cells: &[Cell], executor: &dyn Executor, work: Work<'_>) -> Result<Outcome, CompareError> {
     let states = cells.iter().map(Cell::state).collect::<Result<Vec<_>, _>>()?;
     let known = cells.iter().zip(&states).map(|(cell, state)| {
         let label = format!("{} seed {}", cell.label, cell.seed);

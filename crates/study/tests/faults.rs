@@ -8,7 +8,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hwasp_core::{Serial, Threads};
-use hwasp_study::{self as study, CompareError, Comparison, Contender, FAILURE, Grid, Outcome, SavedComparison, Watch, Work};
+use hwasp_study::{
+    self as study, CompareError, Comparison, Contender, FAILURE, Grid, Outcome, SavedComparison, Watch, Work,
+};
 use hwasp_testing::{catalogue, empty, layers};
 use hwasp_training::{Event, TrainError};
 

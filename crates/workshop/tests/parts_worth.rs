@@ -9,7 +9,7 @@ use hwasp_core::{Executor, Serial};
 use hwasp_experiment::{Experiment, Place};
 use hwasp_runs::{Provenance, RunError, SavedRun, no_extras};
 use hwasp_testing::executor;
-use hwasp_training::{LocalCollector, Assembly, evaluate, evaluate_in, params_at, train, train_from};
+use hwasp_training::{Assembly, LocalCollector, evaluate, evaluate_in, params_at, train, train_from};
 use hwasp_workshop::parts::{
     PartsError, PartsList, SHEET, Snapped, SpringCatalogue, Tuning, TuningFolder, Workshop, snap,
 };

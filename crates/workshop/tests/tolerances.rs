@@ -5,7 +5,7 @@
 use hwasp_core::{Executor, Serial};
 use hwasp_plot::render_png;
 use hwasp_testing::{empty, executor};
-use hwasp_training::{LocalCollector, Assembly, MeanInterval, evaluate_in};
+use hwasp_training::{Assembly, LocalCollector, MeanInterval, evaluate_in};
 use hwasp_workshop::tolerances::{ManufacturingError, Sensitivities, errors_of, tolerances};
 
 const ASKED: (u64, u64) = (12, 4);

@@ -40,7 +40,9 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
     let mut local = LocalServer::start(&options).map_err(Failure::input)?;
     let server = local.server.clone();
     if !args.bind.is_loopback() && options.certificate.is_none() {
-        tracing::warn!("the queue can be reached from other machines, and without TLS its token can be read on the way");
+        tracing::warn!(
+            "the queue can be reached from other machines, and without TLS its token can be read on the way"
+        );
     }
     let workers = usize::try_from(args.workers).unwrap_or(usize::MAX);
     let threads = args.threads.map_or_else(|| share(workers), NonZeroUsize::get);
@@ -73,7 +75,8 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
 
 /// What there is now, and what to do with it.
 fn told(server: &Server, workers: usize, threads: usize) -> String {
-    let token = server.token.as_deref().map_or(String::new(), |token| format!(" --token-file {}", output::shell(token)));
+    let token =
+        server.token.as_deref().map_or(String::new(), |token| format!(" --token-file {}", output::shell(token)));
     let authority =
         server.authority.as_deref().map_or(String::new(), |file| format!(" --tls-ca {}", output::shell(file)));
     let address = &server.address;

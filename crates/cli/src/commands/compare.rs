@@ -12,7 +12,7 @@ use hwasp_training::STILL;
 
 use super::{layers, stop_on_signal, typed};
 use crate::args::CompareArgs;
-use crate::crew::{Crew, Elsewhere};
+use crate::crew::{Crew, Elsewhere, place};
 use crate::failure::Failure;
 use crate::grid_progress::GridProgress;
 use crate::output;
@@ -139,7 +139,7 @@ pub(super) fn run_grid(
 /// What workers know a comparison by: its folder, and what is trained in it.
 fn names(cells: &[Cell], folder: &Path) -> Result<Vec<String>, Failure> {
     let texts = cells.iter().map(|cell| cell.experiment_text()).collect::<Result<Vec<_>, _>>()?;
-    Ok([vec![std::path::absolute(folder)?.display().to_string()], texts].concat())
+    Ok([vec![place(folder)?], texts].concat())
 }
 
 /// All that the machine has: cells do not wait for each other.

@@ -1,7 +1,7 @@
 //! Episodes and candidates from workers.
 
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use hwasp_core::{Batch, Executor};
@@ -11,7 +11,7 @@ use hwasp_training::collect::{
 use hwasp_training::{Assembly, Collector, LocalCollector};
 
 use super::Cluster;
-use super::ask::{Asker, Need};
+use super::ask::{Asker, Need, Reply};
 use crate::message::{Block, Class, Content, Params, Payload, Task, pack, unpack};
 
 /// Work of less time than this is done here: the way to a worker and back takes as long. Seconds.
@@ -66,7 +66,12 @@ impl<'a> RemoteCollector<'a> {
     }
 
     /// Asks for a request in parts, and puts the answers together in order.
-    fn parts(&self, request: &EpisodesRequest, task: fn(Block) -> Task, alone: bool) -> Result<Vec<Answer>, CollectError> {
+    fn parts(
+        &self,
+        request: &EpisodesRequest,
+        task: fn(Block) -> Task,
+        alone: bool,
+    ) -> Result<Vec<Answer>, CollectError> {
         let slots = self.cluster.workers().1.max(1);
         let seconds = self.pace() * amount(request) as f64;
         let wanted = if self.pace() > 0.0 { (seconds / BLOCK) as usize } else { 2 * slots };
@@ -90,8 +95,10 @@ impl<'a> RemoteCollector<'a> {
                 let job = asker.job(experiment.clone(), task(block));
                 async move { asker.ask(&job?, needs).await }
             };
-            futures_util::future::join_all(parts.into_iter().map(ask)).await
-                .into_iter().collect::<Result<Vec<_>, CollectError>>()
+            futures_util::future::join_all(parts.into_iter().map(ask))
+                .await
+                .into_iter()
+                .collect::<Result<Vec<_>, CollectError>>()
         };
         let answers = self.cluster.wait(work).unwrap_or(Err(CollectError::Interrupted))?;
         self.measured(answers.iter().map(|reply| reply.seconds).sum(), amount(request));
@@ -110,7 +117,9 @@ impl<'a> RemoteCollector<'a> {
         const REMEMBERED: usize = 4;
         let known = |kept: &Vec<(Arc<[f32]>, Payload, Option<Need>)>| {
             // By their bits: what is no number is no other one.
-            let same = |one: &[f32]| one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits());
+            let same = |one: &[f32]| {
+                one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits())
+            };
             kept.iter().find(|kept| same(&kept.0)).map(|kept| (kept.1.clone(), kept.2.clone()))
         };
         if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
@@ -171,7 +180,7 @@ impl Collector for RemoteCollector<'_> {
         let request = request.clone();
         let (sender, receiver) = std::sync::mpsc::channel();
         let task = self.cluster.handle.spawn(async move {
-            let asked = async {
+            let asked: Result<(String, Reply), CollectError> = async {
                 let (experiment, need) = asker.experiment(&request.experiment).await?;
                 let (from, state) = match &request.from {
                     Some(archive) => {
@@ -184,10 +193,19 @@ impl Collector for RemoteCollector<'_> {
                 let job = asker.job(experiment, Task::Candidate { design, seed, env_steps, from })?;
                 let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
                 let answer = asker.ask(&job, &needs).await;
-                asker.forget_state(&job.name).await;
-                answer
+                Ok((job.name, answer?))
+            }
+            .await;
+            let (name, answer) = match asked {
+                Ok((name, reply)) => (Some(name), Ok(reply)),
+                // Its state is there for whoever asks again.
+                Err(error) => (None, Err(error)),
             };
-            let _ = sender.send(asked.await);
+            // Who asked may be gone.
+            let _ = sender.send(answer);
+            if let Some(name) = name {
+                asker.forget_state(&name).await;
+            }
         });
         loop {
             match receiver.recv_timeout(LOOK) {

@@ -65,7 +65,7 @@ pub fn status(server: &Server) -> Result<Status, ClusterError> {
 async fn ask(server: &Server) -> Result<Status, ClusterError> {
     let queue = |why: String| ClusterError::Queue { address: server.address.clone(), why };
     let client = server.connect("hwasp cluster status").await?;
-    let store = Store::open(client, &server.address).await?;
+    let store = Store::open(client, &server.address, Duration::ZERO).await?;
     let cards = call(&store, None).await.map_err(queue)?;
     let jobs = store.jobs().await.map_err(queue)?;
     let messages = jobs.get_info().await.map_err(|error| queue(error.to_string()))?.state.messages;

@@ -45,6 +45,8 @@ impl Stored {
     pub const TOKEN: &'static str = "token";
     /// What it was started with.
     pub const CONFIG: &'static str = "nats.conf";
+    /// Who has it open has the folder.
+    pub const LOCK: &'static str = "lock";
     /// Its log.
     pub const LOG: &'static str = "server.log";
 }
@@ -70,6 +72,14 @@ impl LocalServer {
         };
         fs::create_dir_all(folder).map_err(unmade)?;
         let folder = &folder.canonicalize().map_err(unmade)?;
+        // The server holds it as its input: as long as it lives, even if we do not, no other one takes the same folder.
+        let lock = File::create(folder.join(Stored::LOCK)).map_err(unmade)?;
+        lock.try_lock().map_err(|_| {
+            start(
+                &format!("another one runs with {} already", folder.display()),
+                "use that one, or end it, or name another folder with --store",
+            )
+        })?;
         let token = folder.join(Stored::TOKEN);
         if !token.exists() {
             write_private(&token, &format!("{}\n", random()?)).map_err(unmade)?;
@@ -78,13 +88,8 @@ impl LocalServer {
         write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?))
             .map_err(unmade)?;
         let log = File::create(folder.join(Stored::LOG)).map_err(unmade)?;
-        let spawned = Command::new(&program)
-            .arg("--config")
-            .arg(&config)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(log)
-            .spawn();
+        let spawned =
+            Command::new(&program).arg("--config").arg(&config).stdin(lock).stdout(Stdio::null()).stderr(log).spawn();
         let child = spawned.map_err(|error| start(&format!("{}: {error}", program.display()), INSTALL))?;
         let address = SocketAddr::new(options.bind, port);
         let scheme = if options.certificate.is_some() { "tls" } else { "nats" };

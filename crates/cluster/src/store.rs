@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use async_nats::Client;
+use async_nats::connection::State;
 use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
-use async_nats::jetstream::context::{Context, ContextBuilder, PublishErrorKind};
+use async_nats::jetstream::context::{Context, ContextBuilder, PublishError, PublishErrorKind};
 use async_nats::jetstream::message::PublishMessage;
 use async_nats::jetstream::publish::PublishAck;
 use async_nats::jetstream::stream::{self, DirectGetErrorKind, DiscardPolicy, RetentionPolicy, StorageType, Stream};
@@ -32,6 +33,8 @@ const AT_WORK: i64 = 1 << 20;
 pub(crate) struct Store {
     pub(crate) client: Client,
     pub(crate) context: Context,
+    /// How long a server that is away, or full, is waited for.
+    patience: Duration,
     /// Time that a request took when it was opened.
     pub(crate) round_trip: Duration,
 }
@@ -39,8 +42,8 @@ pub(crate) struct Store {
 /// Why something is not kept.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StoreError {
-    #[error("the server kept nothing for {}: {why}", seconds(*.waited))]
-    Kept { waited: Duration, why: String },
+    #[error("the server did not answer as it should for {}: {why}", seconds(*.waited))]
+    Away { waited: Duration, why: String },
     #[error("what it names is not kept any more")]
     Gone,
     #[error("it is not what it is named after")]
@@ -53,9 +56,9 @@ fn seconds(time: Duration) -> String {
 
 impl Store {
     /// Makes the streams where they are not there yet.
-    pub(crate) async fn open(client: Client, address: &str) -> Result<Self, ClusterError> {
+    pub(crate) async fn open(client: Client, address: &str, patience: Duration) -> Result<Self, ClusterError> {
         let context = ContextBuilder::new().ack_timeout(Duration::from_secs(5)).build(client.clone());
-        let mut store = Self { client, context, round_trip: Duration::ZERO };
+        let mut store = Self { client, context, patience, round_trip: Duration::ZERO };
         let queue = |why| ClusterError::Queue { address: address.to_owned(), why };
         store.ensure().await.map_err(queue)?;
         let began = Instant::now();
@@ -99,6 +102,8 @@ impl Store {
             max_ack_pending: AT_WORK,
             // Workers that wait for jobs.
             max_waiting: 1 << 16,
+            // Programs change: the consumer of one that nobody runs any more goes, and its jobs age.
+            inactive_threshold: MOST_AGE,
             ..pull::Config::default()
         };
         jobs.create_consumer(config).await.map_err(|error| error.to_string())
@@ -112,43 +117,33 @@ impl Store {
         self.context.get_stream_no_info(subjects::DATA).await.map_err(|error| error.to_string())
     }
 
-    /// Keeps a message, and tries for so long. `id`: messages of one id are kept once.
+    /// Keeps a message. `id`: messages of one id are kept once.
     pub(crate) async fn publish(
         &self,
         subject: &str,
         bytes: Bytes,
         id: Option<&str>,
-        patience: Duration,
     ) -> Result<PublishAck, StoreError> {
         let (began, mut pause, mut told) = (Instant::now(), PAUSE[0], false);
         loop {
-            let mut message = PublishMessage::build().payload(bytes.clone());
-            if let Some(id) = id {
-                message = message.message_id(id);
-            }
-            let sent = match self.context.send_publish(subject.to_owned(), message).await {
-                Ok(acknowledged) => acknowledged.await,
-                Err(error) => Err(error),
-            };
-            let error = match sent {
+            let (kind, why) = match self.publish_once(subject, bytes.clone(), id).await {
                 Ok(acknowledged) => return Ok(acknowledged),
-                Err(error) => error,
+                Err(error) => match std::error::Error::source(&error) {
+                    Some(source) => (error.kind(), format!("{error}: {source}")),
+                    None => (error.kind(), error.to_string()),
+                },
             };
-            let why = match std::error::Error::source(&error) {
-                Some(source) => format!("{error}: {source}"),
-                None => error.to_string(),
-            };
-            if began.elapsed() >= patience || error.kind() == PublishErrorKind::MaxPayloadExceeded {
-                return Err(StoreError::Kept { waited: began.elapsed(), why });
+            if began.elapsed() >= self.patience || kind == PublishErrorKind::MaxPayloadExceeded {
+                return Err(StoreError::Away { waited: began.elapsed(), why });
             }
             if !told && pause > PAUSE[0] {
                 tracing::warn!(
                     "the server does not keep what is sent ({why}); it is tried again for {}",
-                    seconds(patience)
+                    seconds(self.patience)
                 );
                 told = true;
             }
-            if error.kind() == PublishErrorKind::StreamNotFound {
+            if kind == PublishErrorKind::StreamNotFound {
                 // It begins anew, with an empty store.
                 let _ = self.ensure().await;
             }
@@ -157,28 +152,29 @@ impl Store {
         }
     }
 
+    async fn publish_once(&self, subject: &str, bytes: Bytes, id: Option<&str>) -> Result<PublishAck, PublishError> {
+        // The client would keep what is sent now for later, each attempt of it.
+        if self.client.connection_state() != State::Connected {
+            return Err(PublishError::new(PublishErrorKind::BrokenPipe));
+        }
+        let message = PublishMessage::build().payload(bytes);
+        let message = match id {
+            Some(id) => message.message_id(id),
+            None => message,
+        };
+        self.context.send_publish(subject.to_owned(), message).await?.await
+    }
+
     /// Keeps bytes of a run, unless they are few.
-    pub(crate) async fn put(
-        &self,
-        run: &str,
-        class: Class,
-        bytes: Vec<u8>,
-        patience: Duration,
-    ) -> Result<Payload, StoreError> {
+    pub(crate) async fn put(&self, run: &str, class: Class, bytes: Vec<u8>) -> Result<Payload, StoreError> {
         if bytes.len() <= INLINE {
             return Ok(Payload::Here(bytes));
         }
-        Ok(Payload::Kept(self.keep(run, class, bytes.into(), patience).await?))
+        Ok(Payload::Kept(self.keep(run, class, bytes.into()).await?))
     }
 
     /// Keeps bytes of a run, few or many.
-    pub(crate) async fn keep(
-        &self,
-        run: &str,
-        class: Class,
-        bytes: Bytes,
-        patience: Duration,
-    ) -> Result<Kept, StoreError> {
+    pub(crate) async fn keep(&self, run: &str, class: Class, bytes: Bytes) -> Result<Kept, StoreError> {
         let largest = self.part();
         let kept = Kept { class, hash: hash(&bytes), bytes: bytes.len() as u64 };
         let parts = bytes.len().div_ceil(largest);
@@ -186,7 +182,7 @@ impl Store {
         let publish = |i: usize| {
             let subject = subjects::part(run, class.word(), &kept.hash, i);
             let part = part(i);
-            async move { self.publish(&subject, part, None, patience).await }
+            async move { self.publish(&subject, part, None).await }
         };
         // All at once: one way there and back, and not one for each.
         futures_util::future::try_join_all((0..parts).map(publish)).await?;
@@ -250,7 +246,6 @@ impl Store {
     where
         F: Future<Output = Result<T, async_nats::jetstream::stream::DirectGetError>>,
     {
-        const PATIENCE: Duration = Duration::from_mins(2);
         let (began, mut pause) = (Instant::now(), PAUSE[0]);
         loop {
             let why = match self.data().await {
@@ -261,8 +256,8 @@ impl Store {
                 },
                 Err(why) => why,
             };
-            if began.elapsed() >= PATIENCE {
-                return Err(StoreError::Kept { waited: began.elapsed(), why });
+            if began.elapsed() >= self.patience {
+                return Err(StoreError::Away { waited: began.elapsed(), why });
             }
             tokio::time::sleep(pause).await;
             pause = (2 * pause).min(PAUSE[1]);

@@ -1,6 +1,8 @@
 //! Who runs episodes and trainings: threads of this process, or workers elsewhere.
 
+use std::io;
 use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 #[cfg(feature = "cluster")]
 use std::time::Duration;
 
@@ -131,6 +133,11 @@ impl Observer for &Crew {
         let _ = event;
         Ok(())
     }
+}
+
+/// A folder's name from the root on, however it was typed: a part of what workers know a run by.
+pub fn place(folder: &Path) -> io::Result<String> {
+    Ok(std::path::absolute(folder)?.components().collect::<PathBuf>().display().to_string())
 }
 
 /// What the bits of this program depend on.

@@ -11,7 +11,7 @@ mod words;
 
 #[cfg(feature = "cluster")]
 pub use crew::identity;
-pub use crew::{Crew, Elsewhere};
+pub use crew::{Crew, Elsewhere, place};
 pub use failure::{Failure, OTHER_FILE};
 pub use given::{executor, run_folder, saved_run};
 pub use session::{Session, Training, What, into_folder};

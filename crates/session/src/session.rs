@@ -14,7 +14,7 @@ use hwasp_training::{
     warm_start,
 };
 
-use crate::crew::{Crew, Elsewhere};
+use crate::crew::{Crew, Elsewhere, place};
 use crate::failure::Failure;
 use crate::given::{run_folder, saved_run};
 use crate::words::{beginning as beginning_line, shell};
@@ -74,16 +74,16 @@ impl Session {
         let keeping = Keeping { checkpoint_every: training.checkpoint_every, ..Keeping::default() };
         let provenance = |seed| Provenance::new(training.command_line, threads.get(), seed);
         let resumed = matches!(training.what, What::Resume(_));
-        let crew = |assembly: &Assembly, began: u64| {
-            // What workers know a training by: its experiment, and when it began.
-            let name = [assembly.experiment().to_toml()?, began.to_string()];
+        let crew = |assembly: &Assembly, path: &Path, began: u64| {
+            // What workers know a training by: its experiment, its folder, and when it began.
+            let name = [assembly.experiment().to_toml()?, place(path)?, began.to_string()];
             Crew::new(threads, elsewhere.as_ref(), &name, catalogue)
         };
         let (assembly, crew, Resumed { folder, found }) = match training.what {
             What::Resume(run) => {
                 let assembly = saved_run(run_folder(&run)?, &[], catalogue)?.assembly().clone();
                 let began = saved_provenance(&run).map_err(Failure::input)?.map_or(0, |before| before.started_unix_s);
-                let (crew, spec) = (crew(&assembly, began)?, assembly.experiment());
+                let (crew, spec) = (crew(&assembly, &run, began)?, assembly.experiment());
                 let folder = RunFolder::resume(&run, spec, provenance(spec.seed), keeping).map_err(Failure::input)?;
                 (assembly, crew, folder)
             }
@@ -96,7 +96,7 @@ impl Session {
                 };
                 let path = out.unwrap_or_else(|| RunFolder::free_name(Path::new("runs"), &spec));
                 let provenance = provenance(spec.seed);
-                let crew = crew(&assembly, provenance.started_unix_s)?;
+                let crew = crew(&assembly, &path, provenance.started_unix_s)?;
                 // A folder that cannot be had is known before the work begins.
                 let folder = RunFolder::create(&path, &spec, &provenance, keeping);
                 let mut folder = folder.map_err(Failure::input)?;

@@ -15,6 +15,7 @@ use crate::args::CompareArgs;
 use crate::grid_progress::GridProgress;
 use crate::output;
 use hwasp_session::Failure;
+use hwasp_session::place;
 use hwasp_session::{Crew, Elsewhere};
 
 /// Cells that wait for workers at once, at most.
@@ -139,7 +140,7 @@ pub(super) fn run_grid(
 /// What workers know a comparison by: its folder, and what is trained in it.
 fn names(cells: &[Cell], folder: &Path) -> Result<Vec<String>, Failure> {
     let texts = cells.iter().map(Cell::experiment_text).collect::<Result<Vec<_>, _>>()?;
-    Ok([vec![std::path::absolute(folder)?.display().to_string()], texts].concat())
+    Ok([vec![place(folder)?], texts].concat())
 }
 
 /// All that the machine has: cells do not wait for each other.

@@ -18,14 +18,14 @@ use crate::message::{Class, Envelope, Job, Kept, Named, Payload, StateNote, Task
 use crate::store::{INLINE, Store};
 use crate::subjects;
 
-/// How long a server that is away is waited for before an error, where nobody says otherwise.
-const STORE_PATIENCE: Duration = Duration::from_mins(10);
 /// Time between two looks after an answer that does not come, at first and at last.
 const LOOKS: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(30)];
 /// Time between two calls of workers while somebody waits.
 const CALLS: Duration = Duration::from_secs(3);
 /// When a job is late: so many times what others of its kind take, and so long at least.
 const LATE: (f64, Duration) = (4.0, Duration::from_secs(10));
+/// How long the server may take to hear that a run is over, or stopped. What it does not hear ages.
+const FAREWELL: Duration = Duration::from_secs(10);
 /// How long nobody may be there before it is told.
 const ALONE: Duration = Duration::from_secs(5);
 /// Why no lock is poisoned.
@@ -67,6 +67,8 @@ pub(crate) struct Asker {
     sign: Mutex<Instant>,
     /// What was told already.
     told: Mutex<BTreeSet<String>>,
+    /// Told when the connection is there again: answers may have been missed.
+    back: Notify,
     /// The number of the stream up to which answers are in the checkpoint before the last.
     mark: AtomicU64,
 }
@@ -103,6 +105,7 @@ impl Asker {
             crew: Mutex::default(),
             sign: Mutex::new(Instant::now()),
             told: Mutex::default(),
+            back: Notify::new(),
             mark: AtomicU64::new(0),
             store,
             run,
@@ -111,8 +114,14 @@ impl Asker {
         asker.look_round().await;
         let called = Arc::clone(&asker);
         tokio::spawn(async move {
+            let connects = &called.store.client.statistics().connects;
+            let mut before = connects.load(Ordering::Relaxed);
             loop {
                 tokio::time::sleep(CALLS).await;
+                let now = connects.load(Ordering::Relaxed);
+                if std::mem::replace(&mut before, now) != now {
+                    called.back.notify_waiters();
+                }
                 if !lock(&called.waiting).is_empty() {
                     called.look_round().await;
                 }
@@ -176,7 +185,7 @@ impl Asker {
     /// Calls the workers.
     async fn look_round(&self) {
         let Ok(cards) = call(&self.store, Some(&self.identity)).await else { return };
-        let crew = Crew::of(&cards, &self.identity);
+        let crew = Crew::of(&cards, &self.identity, &self.run);
         for (name, differs) in &crew.refused {
             self.tell_once(&format!("refused {name}"), || {
                 tracing::warn!("the worker {name} gets no jobs, for it would not give the same bits: it has {differs}");
@@ -213,7 +222,7 @@ impl Asker {
     }
 
     async fn keep(&self, need: &Need) -> Result<Kept, CollectError> {
-        let kept = self.store.keep(&self.run, need.class, need.bytes.clone(), STORE_PATIENCE).await;
+        let kept = self.store.keep(&self.run, need.class, need.bytes.clone()).await;
         kept.map_err(unanswered)
     }
 
@@ -241,6 +250,17 @@ impl Asker {
     /// Asks for a job, and waits for the bytes of its answer. `needs`: what the job names, to be kept once more should the server have
     /// lost it.
     pub(super) async fn ask(&self, job: &Job, needs: &[Need]) -> Result<Reply, CollectError> {
+        let reply = self.asked(job, needs).await;
+        // Where the answer was found otherwise, nobody waits for the message with it.
+        let mut waiting = lock(&self.waiting);
+        if let Some(senders) = waiting.get_mut(&job.name) {
+            senders.retain(|sender| !sender.is_closed());
+        }
+        waiting.retain(|name, senders| *name != job.name || !senders.is_empty());
+        reply
+    }
+
+    async fn asked(&self, job: &Job, needs: &[Need]) -> Result<Reply, CollectError> {
         let (kind, began) = (job.task.kind(), Instant::now());
         let mut receiver = self.wait_for(&job.name);
         if self.before.contains(&job.name)
@@ -248,11 +268,13 @@ impl Asker {
         {
             return Ok(reply);
         }
-        let mut sequence = self.publish(job, 0).await?;
+        // Whoever asked before us may be gone, and a worker be at it still.
+        let mut sequence = if self.is_at_work(job) { None } else { Some(self.publish(job, 0).await?) };
         let (mut look, mut asked) = (LOOKS[0], 1_u32);
         loop {
-            let found = match tokio::time::timeout(look, &mut receiver).await {
-                Ok(Ok(envelope)) => {
+            let told = tokio::time::timeout(look, &mut receiver);
+            let found = match until(told, self.back.notified()).await {
+                Some(Ok(envelope)) => {
                     let reply = self.reply(&envelope).await;
                     if reply.is_none() {
                         // Its bytes are lost; it is asked for once more.
@@ -261,30 +283,32 @@ impl Asker {
                     reply
                 }
                 // Nobody hands an envelope on any more: the list was cleared.
-                Ok(Err(_)) => return Err(CollectError::Interrupted),
-                Err(_) => self.look(job).await?,
+                Some(Err(_)) => return Err(CollectError::Interrupted),
+                None => self.look(job).await?,
             };
             if let Some(reply) = found {
                 self.timed(kind, reply.seconds);
                 return Ok(reply);
             }
             self.check_patience(job)?;
-            let at_work = lock(&self.crew).at_work.contains(&job.name);
-            if at_work && !self.late(kind, began, asked) {
+            // One who is slow may not answer a call in time: then the queue says that somebody has the job.
+            let there = self.is_at_work(job) || self.queued(sequence).await;
+            if there && !self.late(kind, began, asked) {
                 look = (2 * look).min(LOOKS[1]);
-                continue;
-            }
-            if !at_work && self.queued(sequence).await {
                 continue;
             }
             // It is lost, or somebody slow has it while others are idle.
             for need in needs {
                 self.keep(need).await?;
             }
-            sequence = self.publish(job, asked).await?;
-            asked += 1;
+            sequence = Some(self.publish(job, asked).await?);
+            (look, asked) = (LOOKS[0], asked + 1);
             tracing::debug!(job = job.name, "{kind} asked for again");
         }
+    }
+
+    fn is_at_work(&self, job: &Job) -> bool {
+        lock(&self.crew).at_work.contains(&job.name)
     }
 
     fn wait_for(&self, job: &str) -> oneshot::Receiver<Envelope> {
@@ -321,7 +345,14 @@ impl Asker {
         lock(&self.news).remove(job);
     }
 
-    /// Removes the state of a candidate that is done.
+    /// Removes what is said of a job, so that it is begun anew.
+    pub(super) async fn forget(&self, job: &str) {
+        for what in ["answer", "news", "state"] {
+            self.store.remove(subjects::said(&self.run, what, job)).await;
+        }
+    }
+
+    /// Removes the state of a job that is done.
     pub(super) async fn forget_state(&self, job: &str) {
         let notes = subjects::said(&self.run, "state", job);
         if let Ok(Some(bytes)) = self.store.last(&notes).await
@@ -336,12 +367,13 @@ impl Asker {
         let subject = subjects::jobs(&self.digest, &self.run);
         let bytes = pack(job).map_err(unanswered)?;
         let id = format!("{}-{}-{asked}", self.run, job.name);
-        let sent = self.store.publish(&subject, bytes.into(), Some(&id), STORE_PATIENCE).await;
+        let sent = self.store.publish(&subject, bytes.into(), Some(&id)).await;
         Ok(sent.map_err(unanswered)?.sequence)
     }
 
     /// Whether a job still waits in the queue, or is handed out.
-    async fn queued(&self, sequence: u64) -> bool {
+    async fn queued(&self, sequence: Option<u64>) -> bool {
+        let Some(sequence) = sequence else { return false };
         let Ok(jobs) = self.store.jobs().await else { return true };
         match jobs.get_raw_message(sequence).await {
             Ok(_) => true,
@@ -394,19 +426,39 @@ impl Asker {
     }
 
     pub(super) async fn stop_run(self: Arc<Self>) {
+        let _ = tokio::time::timeout(FAREWELL, self.end_work()).await;
+        lock(&self.waiting).clear();
+    }
+
+    pub(super) async fn forget_run(self: Arc<Self>) {
+        let _ = tokio::time::timeout(FAREWELL, self.remove_run()).await;
+    }
+
+    /// Removes the jobs of the run, and has workers end with those that they are at.
+    async fn end_work(&self) {
         if let Ok(jobs) = self.store.jobs().await {
             let _ = jobs.purge().filter(subjects::jobs(&self.digest, &self.run)).await;
         }
         let _ = self.store.client.publish(subjects::stop(&self.run), Bytes::new()).await;
         let _ = self.store.client.flush().await;
-        lock(&self.waiting).clear();
     }
 
-    pub(super) async fn forget_run(self: Arc<Self>) {
-        if let Ok(jobs) = self.store.jobs().await {
-            let _ = jobs.purge().filter(subjects::jobs(&self.digest, &self.run)).await;
-        }
+    /// Removes all that is kept of the run.
+    async fn remove_run(&self) {
+        // Somebody may be at what was asked for twice.
+        self.end_work().await;
         self.store.remove(subjects::data(&self.run)).await;
+    }
+}
+
+/// Waits for a future until another one is there first.
+async fn until<T>(
+    wanted: impl Future<Output = Result<T, tokio::time::error::Elapsed>>,
+    end: impl Future<Output = ()>,
+) -> Option<T> {
+    match futures_util::future::select(std::pin::pin!(wanted), std::pin::pin!(end)).await {
+        futures_util::future::Either::Left((found, _)) => found.ok(),
+        futures_util::future::Either::Right(_) => None,
     }
 }
 

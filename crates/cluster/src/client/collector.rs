@@ -11,7 +11,7 @@ use hwasp_training::collect::{
 use hwasp_training::{Assembly, Collector, LocalCollector};
 
 use super::Cluster;
-use super::ask::{Asker, Need};
+use super::ask::{Asker, Need, Reply};
 use crate::message::{Block, Class, Content, Params, Payload, Task, pack, unpack};
 
 /// Work of less time than this is done here: the way to a worker and back takes as long. Seconds.
@@ -184,7 +184,7 @@ impl Collector for RemoteCollector<'_> {
         let request = request.clone();
         let (sender, receiver) = std::sync::mpsc::channel();
         let task = self.cluster.handle.spawn(async move {
-            let asked = async {
+            let asked: Result<(String, Reply), CollectError> = async {
                 let (experiment, need) = asker.experiment(&request.experiment).await?;
                 let (from, state) = match &request.from {
                     Some(archive) => {
@@ -197,10 +197,19 @@ impl Collector for RemoteCollector<'_> {
                 let job = asker.job(experiment, Task::Candidate { design, seed, env_steps, from })?;
                 let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
                 let answer = asker.ask(&job, &needs).await;
-                asker.forget_state(&job.name).await;
-                answer
+                Ok((job.name, answer?))
+            }
+            .await;
+            let (name, answer) = match asked {
+                Ok((name, reply)) => (Some(name), Ok(reply)),
+                // Its state is there for whoever asks again.
+                Err(error) => (None, Err(error)),
             };
-            let _ = sender.send(asked.await);
+            // Who asked may be gone.
+            let _ = sender.send(answer);
+            if let Some(name) = name {
+                asker.forget_state(&name).await;
+            }
         });
         loop {
             match receiver.recv_timeout(LOOK) {

@@ -24,21 +24,22 @@ pub(crate) struct Crew {
     pub(crate) slots: usize,
     /// Of those, what is idle.
     pub(crate) idle: usize,
-    /// The names of jobs at work.
+    /// The names of jobs of the run at work.
     pub(crate) at_work: BTreeSet<String>,
     /// Names of workers of another identity, and how they differ.
     pub(crate) refused: Vec<(String, String)>,
 }
 
 impl Crew {
-    pub(crate) fn of(cards: &[Card], identity: &Identity) -> Self {
+    pub(crate) fn of(cards: &[Card], identity: &Identity, run: &str) -> Self {
         let mut crew = Self::default();
         for card in cards {
             if let Some(differs) = identity.differs(&card.identity) {
                 crew.refused.push((card.name.clone(), differs));
                 continue;
             }
-            crew.at_work.extend(card.at_work.iter().map(|at_work| at_work.job.clone()));
+            crew.at_work
+                .extend(card.at_work.iter().filter(|at_work| at_work.run == run).map(|at_work| at_work.job.clone()));
             if !card.draining {
                 crew.workers += 1;
                 crew.slots += card.threads;

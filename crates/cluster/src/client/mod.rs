@@ -27,6 +27,9 @@ use crate::identity::Identity;
 use crate::server::Server;
 use crate::store::Store;
 
+/// How long a server that is away, or full, is waited for before an error.
+const STORE_PATIENCE: Duration = Duration::from_mins(10);
+
 /// A connection to workers, for one run. It may be shared by threads.
 pub struct Cluster {
     asker: Arc<Asker>,
@@ -51,7 +54,7 @@ impl Cluster {
         let handle = runtime.handle().clone();
         let asker = runtime.block_on(async {
             let client = server.connect(&format!("hwasp {}", run.as_str())).await?;
-            let store = Store::open(client, &server.address).await?;
+            let store = Store::open(client, &server.address, STORE_PATIENCE).await?;
             Asker::new(store, identity, run, patience, &server.address).await
         })?;
         let (over, ends) = oneshot::channel();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 use bytes::Bytes;
@@ -25,9 +26,9 @@ const STOP: Duration = Duration::from_millis(100);
 /// What comes from a worker.
 enum Item {
     Told(Box<Told>),
-    /// A checkpoint's bytes; none where it is not kept any more, because a newer one is.
-    Checkpoint(u64, Option<Bytes>),
-    End(Result<Bytes, CollectError>),
+    /// A checkpoint's bytes.
+    Checkpoint(Bytes),
+    End(Result<TrainingAnswer, CollectError>),
 }
 
 impl Trainer for Cluster {
@@ -40,43 +41,23 @@ impl Trainer for Cluster {
     ) -> Result<Trained, TrainError> {
         let text = ExperimentText::of(assembly.experiment())?;
         let bytes = from.map(pack).transpose().map_err(CollectError::Unanswered)?;
+        let (iteration, env_steps) = from.map_or((0, 0), |checkpoint| (checkpoint.iteration, checkpoint.env_steps));
         let (sender, receiver) = std::sync::mpsc::channel();
         let asker = Arc::clone(&self.asker);
         let task = self.handle.spawn(async move {
-            let ended = follow(&asker, &text, bytes, &sender).await;
+            let ended = follow(&asker, &text, bytes, iteration, &sender).await;
             let _ = sender.send(Item::End(ended));
         });
-        // Iterations that are known: those of the checkpoint, and those told since.
-        let (iteration, env_steps) = from.map_or((0, 0), |checkpoint| (checkpoint.iteration, checkpoint.env_steps));
         let resumed = from.map(|checkpoint| checkpoint.env_steps);
-        let mut heard = Heard { iteration, env_steps, resumed, begun: false, observer };
         let budget = assembly.experiment().train.env_steps;
-        loop {
-            match receiver.recv_timeout(STOP) {
-                Ok(Item::Told(told)) => heard.hear(&told)?,
-                Ok(Item::Checkpoint(iteration, Some(bytes))) => heard.checkpoint(iteration, &bytes)?,
-                Ok(Item::End(answer)) => {
-                    return match unpack(&answer?).map_err(CollectError::Unanswered)? {
-                        TrainingAnswer::Trained(trained) => Ok(*trained),
-                        TrainingAnswer::Failed(why) => Err(TrainError::Elsewhere(why)),
-                        TrainingAnswer::Setup(why) => Err(AssembleError::Elsewhere(why).into()),
-                    };
-                }
-                Err(_) if stop.load(Ordering::Relaxed) => {
-                    task.abort();
-                    return Err(TrainError::Interrupted { env_steps: heard.env_steps, budget });
-                }
-                Ok(Item::Checkpoint(_, None)) | Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {}
-                Err(error) => return Err(CollectError::Unanswered(error.to_string()).into()),
-            }
-        }
+        let ended = Heard { env_steps, resumed, begun: false, observer }.listen(&receiver, stop, budget);
+        task.abort();
+        ended
     }
 }
 
-/// Tells an observer what has not been told yet.
+/// Tells an observer.
 struct Heard<'a> {
-    /// Iterations that are known.
-    iteration: u64,
     env_steps: u64,
     /// The steps of the checkpoint that it goes on from.
     resumed: Option<u64>,
@@ -85,15 +66,40 @@ struct Heard<'a> {
 }
 
 impl Heard<'_> {
+    fn listen(
+        mut self,
+        receiver: &std::sync::mpsc::Receiver<Item>,
+        stop: &AtomicBool,
+        budget: u64,
+    ) -> Result<Trained, TrainError> {
+        loop {
+            match receiver.recv_timeout(STOP) {
+                Ok(Item::Told(told)) => self.hear(&told)?,
+                Ok(Item::Checkpoint(bytes)) => {
+                    let checkpoint: Checkpoint = unpack(&bytes).map_err(CollectError::Unanswered)?;
+                    self.observer.on(Event::Checkpoint(&checkpoint))?;
+                }
+                Ok(Item::End(answer)) => {
+                    return match answer? {
+                        TrainingAnswer::Trained(trained) => Ok(*trained),
+                        TrainingAnswer::Failed(why) => Err(TrainError::Elsewhere(why)),
+                        TrainingAnswer::Setup(why) => Err(AssembleError::Elsewhere(why).into()),
+                    };
+                }
+                Err(_) if stop.load(Ordering::Relaxed) => {
+                    return Err(TrainError::Interrupted { env_steps: self.env_steps, budget });
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(error) => return Err(CollectError::Unanswered(error.to_string()).into()),
+            }
+        }
+    }
+
     fn hear(&mut self, told: &Told) -> Result<(), TrainError> {
         match told {
             Told::Iteration(row) => {
-                // Whoever took over from an earlier state tells some once more.
-                if row.iteration == self.iteration {
-                    self.iteration += 1;
-                    self.env_steps = row.env_steps;
-                    self.observer.on(Event::Iteration(row))?;
-                }
+                self.env_steps = row.env_steps;
+                self.observer.on(Event::Iteration(row))?;
             }
             // Each worker that takes over begins.
             Told::Started { .. } if self.begun => {}
@@ -112,14 +118,6 @@ impl Heard<'_> {
         }
         Ok(())
     }
-
-    fn checkpoint(&mut self, iteration: u64, bytes: &[u8]) -> Result<(), TrainError> {
-        if iteration == self.iteration {
-            let checkpoint: Checkpoint = unpack(bytes).map_err(CollectError::Unanswered)?;
-            self.observer.on(Event::Checkpoint(&checkpoint))?;
-        }
-        Ok(())
-    }
 }
 
 /// Asks for a training and hands on what comes of it, in order.
@@ -127,8 +125,9 @@ async fn follow(
     asker: &Asker,
     text: &ExperimentText,
     from: Option<Vec<u8>>,
+    known: u64,
     sender: &std::sync::mpsc::Sender<Item>,
-) -> Result<Bytes, CollectError> {
+) -> Result<TrainingAnswer, CollectError> {
     let (experiment, need) = asker.experiment(text).await?;
     let (from, state) = match from {
         Some(bytes) => asker.put(Class::Run, bytes).await.map(|(payload, need)| (Some(payload), need))?,
@@ -137,7 +136,7 @@ async fn follow(
     let job = asker.job(experiment, Task::Training { from })?;
     let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
     let announced = asker.announce(&job.name);
-    let mut reader = Reader { asker, job: &job, next: 0, sender };
+    let mut reader = Reader { asker, job: &job, next: 0, known, sender };
     let answer = {
         let mut asked = std::pin::pin!(asker.ask(&job, &needs));
         loop {
@@ -151,14 +150,38 @@ async fn follow(
     // All news are kept before the answer is.
     reader.read().await?;
     asker.silence(&job.name);
+    let answer = unpack(&answer.content).map_err(CollectError::Unanswered)?;
+    if let TrainingAnswer::Trained(trained) = &answer
+        && reader.known < trained.iterations
+    {
+        asker.forget(&job.name).await;
+        return Err(CollectError::Unanswered(format!(
+            "the server lost what was told of iteration {}; the same command again goes on before it",
+            reader.known
+        )));
+    }
     // News stay until the run is over: who goes on after the next line of code may not have them yet.
     asker.forget_state(&job.name).await;
-    Ok(answer.content)
+    Ok(answer)
 }
 
 /// Until news are announced, or it is time to look for them.
 async fn wait(announced: &Notify) {
     let _ = tokio::time::timeout(LOOK, announced.notified()).await;
+}
+
+/// Whether something is news where so many iterations are known, which it may add to: whoever took over from an earlier state tells some
+/// once more, and whoever was left behind tells of states that are old.
+fn is_new(told: &Told, known: &mut u64) -> bool {
+    match told {
+        Told::Iteration(row) => {
+            let new = row.iteration == *known;
+            *known += u64::from(new);
+            new
+        }
+        Told::Checkpoint { iteration, .. } => iteration == known,
+        _ => true,
+    }
 }
 
 /// Reads the news of a job from where it stopped.
@@ -167,6 +190,8 @@ struct Reader<'a> {
     job: &'a Job,
     /// The first number of the stream that was not looked at.
     next: u64,
+    /// Iterations that are known: those of the checkpoint that it goes on from, and those told since.
+    known: u64,
     sender: &'a std::sync::mpsc::Sender<Item>,
 }
 
@@ -180,11 +205,15 @@ impl Reader<'_> {
             let Ok(bytes) = self.asker.store.get(&self.asker.run, &payload).await else { continue };
             let Ok(News(news)) = unpack(&bytes) else { continue };
             for told in news {
+                if !is_new(&told, &mut self.known) {
+                    continue;
+                }
                 let item = match told {
-                    Told::Checkpoint { iteration, state } => {
-                        let state = self.asker.store.get(&self.asker.run, &state).await.ok();
-                        Item::Checkpoint(iteration, state)
-                    }
+                    Told::Checkpoint { state, .. } => match self.asker.store.get(&self.asker.run, &state).await {
+                        Ok(bytes) => Item::Checkpoint(bytes),
+                        // It is not kept any more, because a newer one is.
+                        Err(_) => continue,
+                    },
                     told => Item::Told(Box::new(told)),
                 };
                 // Whoever asked may be gone.

@@ -23,6 +23,10 @@ pub use self::card::Card;
 
 /// How often it is looked whether it is to end.
 const LOOK: Duration = Duration::from_millis(200);
+/// How long an answer is tried to be kept. Then the job goes back to the queue.
+const PATIENCE: Duration = Duration::from_mins(2);
+/// How long acknowledgements may take at the end.
+const FAREWELL: Duration = Duration::from_secs(5);
 
 /// A worker that is asked for.
 #[derive(Clone, Debug)]
@@ -59,7 +63,7 @@ pub fn serve(
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(async {
         let client = options.server.connect(&format!("hwasp worker {}", options.name)).await?;
-        let store = Store::open(client, &options.server.address).await?;
+        let store = Store::open(client, &options.server.address, PATIENCE).await?;
         let service = Service::new(options, store, catalogue, identity, Arc::clone(stop));
         let listeners = service.listen().await?;
         ready();
@@ -77,7 +81,7 @@ pub fn serve(
             listener.abort();
         }
         // Acknowledgements may still be on the way.
-        let _ = service.store.client.flush().await;
+        let _ = tokio::time::timeout(FAREWELL, service.store.client.flush()).await;
         Ok(service.served())
     })
 }

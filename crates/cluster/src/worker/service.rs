@@ -32,8 +32,6 @@ use crate::subjects;
 const PULL: Duration = Duration::from_secs(10);
 /// Pause after something that failed.
 const PAUSE: Duration = Duration::from_secs(1);
-/// How long an answer is tried to be kept. Then the job goes back to the queue.
-const PATIENCE: Duration = Duration::from_mins(2);
 /// Workers that may begin a job and not come to its end, without a step forward.
 const MOST_BEGINNINGS: u64 = 8;
 /// Experiments and sets of parameters that are kept for the next job.
@@ -74,11 +72,16 @@ enum Outcome {
     Interrupted,
     /// What it needs is gone, or cannot be read.
     Lost(String),
+    /// The server keeps nothing, or says nothing.
+    Away(String),
 }
 
 impl From<StoreError> for Outcome {
     fn from(error: StoreError) -> Self {
-        Self::Lost(error.to_string())
+        match error {
+            StoreError::Away { .. } => Self::Away(error.to_string()),
+            StoreError::Gone | StoreError::Other => Self::Lost(error.to_string()),
+        }
     }
 }
 
@@ -327,13 +330,14 @@ impl Service {
 
     /// Works, and keeps the answer. Whether there is one.
     async fn finish(&self, job: Job, delivered: u64, ends: &Arc<AtomicBool>) -> Result<bool, String> {
-        let (run, name, again) = (job.run.clone(), job.name.clone(), delivered > 1);
+        let (run, name) = (job.run.clone(), job.name.clone());
         let answer = subjects::said(&run, "answer", &name);
-        let outcome = self.work(job, delivered, again, ends, &answer).await;
+        let outcome = self.work(job, delivered, ends, &answer).await;
         let envelope = match outcome.unwrap_or_else(|outcome| outcome) {
             Outcome::Answered(envelope) => envelope,
             Outcome::There => return Ok(true),
             Outcome::Interrupted => return Ok(false),
+            Outcome::Away(why) => return Err(why),
             Outcome::Lost(why) => {
                 // Whoever asks notices that it is gone, and asks again with all that it takes.
                 tracing::warn!(worker = self.name, job = name, run, "dropped: {why}");
@@ -341,25 +345,24 @@ impl Service {
             }
         };
         let bytes = pack(&envelope)?;
-        match self.store.publish(&answer, bytes.into(), None, PATIENCE).await {
-            Ok(_) => Ok(true),
-            Err(error) => Err(error.to_string()),
-        }
+        self.store.publish(&answer, bytes.into(), None).await.map(|_| true).map_err(|error| error.to_string())
     }
 
-    async fn work(
-        &self,
-        job: Job,
-        delivered: u64,
-        again: bool,
-        ends: &Arc<AtomicBool>,
-        answer: &str,
-    ) -> Result<Outcome, Outcome> {
-        if again && self.store.last(answer).await?.is_some() {
+    async fn work(&self, job: Job, delivered: u64, ends: &Arc<AtomicBool>, answer: &str) -> Result<Outcome, Outcome> {
+        let long = matches!(job.task, Task::Candidate { .. } | Task::Training { .. });
+        if (long || delivered > 1) && self.is_answered(&job, answer).await? {
             return Ok(Outcome::There);
         }
+        let note = if long { self.note(&job).await? } else { None };
         let mut seconds = 0.0;
         let content = match job.task {
+            _ if delivered.saturating_sub(note.as_ref().map_or(0, |note| note.delivered)) > MOST_BEGINNINGS => {
+                let why = format!("{MOST_BEGINNINGS} workers began it, one after the other, and none came to its end");
+                Some(match job.task {
+                    Task::Training { .. } => pack(&TrainingAnswer::Setup(why)),
+                    _ => pack(&Content::Err(CollectError::Unanswered(why))),
+                })
+            }
             Task::Nothing(_) => Some(pack(&Content::Ok(Answer::Results(Vec::new())))),
             Task::Rows(ref block) => {
                 let request = Request::Rows(self.request(&job, block).await?);
@@ -371,7 +374,7 @@ impl Service {
             }
             Task::Candidate { .. } | Task::Training { .. } => {
                 let began = Instant::now();
-                let content = self.long(&job, delivered, ends).await?;
+                let content = self.long(&job, delivered, note, ends).await?;
                 seconds = began.elapsed().as_secs_f64();
                 content
             }
@@ -379,8 +382,21 @@ impl Service {
         let Some(content) = content else { return Ok(Outcome::Interrupted) };
         let content = content.map_err(Outcome::Lost)?;
         let class = if matches!(job.task, Task::Training { .. }) { Class::Run } else { Class::Iteration };
-        let content = self.store.put(&job.run, class, content, PATIENCE).await?;
+        let content = self.store.put(&job.run, class, content).await?;
         Ok(Outcome::Answered(Envelope { job: job.name, worker: self.name.clone(), seconds, content }))
+    }
+
+    /// Whether the answer of a job is kept, and can be read.
+    async fn is_answered(&self, job: &Job, answer: &str) -> Result<bool, StoreError> {
+        let Some(bytes) = self.store.last(answer).await? else { return Ok(false) };
+        let Ok(envelope) = unpack::<Envelope>(&bytes) else { return Ok(false) };
+        Ok(self.store.get(&job.run, &envelope.content).await.is_ok())
+    }
+
+    /// Where a job stood when somebody kept its state.
+    async fn note(&self, job: &Job) -> Result<Option<StateNote>, StoreError> {
+        let bytes = self.store.last(&subjects::said(&job.run, "state", &job.name)).await?;
+        Ok(bytes.and_then(|bytes| unpack(&bytes).ok()))
     }
 
     /// Runs a request on a thread of its own, and packs the answer there.
@@ -451,20 +467,9 @@ impl Service {
         &self,
         job: &Job,
         delivered: u64,
+        note: Option<StateNote>,
         ends: &Arc<AtomicBool>,
     ) -> Result<Option<Result<Vec<u8>, String>>, Outcome> {
-        let notes = subjects::said(&job.run, "state", &job.name);
-        let note: Option<StateNote> = match self.store.last(&notes).await? {
-            Some(bytes) => unpack(&bytes).ok(),
-            None => None,
-        };
-        if delivered.saturating_sub(note.as_ref().map_or(0, |note| note.delivered)) > MOST_BEGINNINGS {
-            let why = format!("{MOST_BEGINNINGS} workers began it, one after the other, and none came to its end");
-            return Ok(Some(match job.task {
-                Task::Training { .. } => pack(&TrainingAnswer::Setup(why)),
-                _ => pack(&Content::Err(CollectError::Unanswered(why))),
-            }));
-        }
         let experiment = self.experiment(&job.run, &job.experiment).await?;
         // A state that is gone or no state has to be done again.
         let state = match &note {
@@ -474,6 +479,7 @@ impl Service {
         let pace = Arc::new(Pace::new(Arc::clone(ends)));
         let (sender, receiver) = unbounded_channel();
         let worker = Arc::clone(&lock(&self.worker));
+        let notes = subjects::said(&job.run, "state", &job.name);
         let uploads = Uploads { service: self, job, delivered, notes, old: note.map(|note| note.state) };
         let waiting = pace.waiting();
         match &job.task {
@@ -484,8 +490,10 @@ impl Service {
                 let request = Request::Candidate(CandidateRequest { experiment, design, seed, env_steps, from });
                 let watch = CandidateUploads { pace, sender };
                 let done = tokio::task::spawn_blocking(move || worker.answer(&request, &watch));
-                uploads.send(receiver, &waiting).await?;
-                let content = done.await.unwrap_or_else(|_| Err(self.panicked()));
+                let sent = uploads.send(receiver, &waiting, ends).await;
+                let done = done.await;
+                sent?;
+                let content = done.unwrap_or_else(|_| Err(self.panicked()));
                 Ok(if content == Err(CollectError::Interrupted) { None } else { Some(pack(&content)) })
             }
             Task::Training { from } => {
@@ -496,8 +504,10 @@ impl Service {
                 let (stop, mut observer) = (Arc::clone(ends), TrainingUploads::new(pace, sender));
                 let done =
                     tokio::task::spawn_blocking(move || worker.train(&experiment, from.as_ref(), &mut observer, &stop));
-                uploads.send(receiver, &waiting).await?;
-                let answer = match done.await {
+                let sent = uploads.send(receiver, &waiting, ends).await;
+                let done = done.await;
+                sent?;
+                let answer = match done {
                     Ok(Ok(trained)) => TrainingAnswer::Trained(Box::new(trained)),
                     Ok(Err(TrainError::Interrupted { .. })) => return Ok(None),
                     Ok(Err(error @ TrainError::Assemble(_))) => TrainingAnswer::Setup(error.to_string()),
@@ -534,15 +544,22 @@ struct Uploads<'a> {
 }
 
 impl Uploads<'_> {
-    /// Sends until the job is over.
-    async fn send(mut self, mut receiver: UnboundedReceiver<Upload>, waiting: &AtomicBool) -> Result<(), StoreError> {
+    /// Sends until the job is over. Where the server keeps nothing, the job is ended: another worker goes on from what is kept.
+    async fn send(
+        mut self,
+        mut receiver: UnboundedReceiver<Upload>,
+        waiting: &AtomicBool,
+        ends: &AtomicBool,
+    ) -> Result<(), StoreError> {
         while let Some(upload) = receiver.recv().await {
-            match upload {
-                Upload::News(news) => self.news(news).await?,
-                Upload::State(iteration, bytes) => {
-                    self.state(iteration, bytes).await?;
-                    waiting.store(false, Ordering::Relaxed);
-                }
+            let sent = match upload {
+                Upload::News(news) => self.news(news).await,
+                Upload::State(iteration, bytes) => self.state(iteration, bytes).await,
+            };
+            waiting.store(false, Ordering::Relaxed);
+            if sent.is_err() {
+                ends.store(true, Ordering::Relaxed);
+                return sent;
             }
         }
         Ok(())
@@ -551,18 +568,18 @@ impl Uploads<'_> {
     async fn news(&self, news: Vec<Told>) -> Result<(), StoreError> {
         let (store, run) = (&self.service.store, &self.job.run);
         let Ok(bytes) = pack(&News(news)) else { return Ok(()) };
-        let payload = store.put(run, Class::Run, bytes, PATIENCE).await?;
+        let payload = store.put(run, Class::Run, bytes).await?;
         let Ok(bytes) = pack(&payload) else { return Ok(()) };
         let subject = subjects::said(run, "news", &self.job.name);
-        store.publish(&subject, bytes.into(), None, PATIENCE).await.map(drop)
+        store.publish(&subject, bytes.into(), None).await.map(drop)
     }
 
     async fn state(&mut self, iteration: u64, bytes: Vec<u8>) -> Result<(), StoreError> {
         let (store, run) = (&self.service.store, &self.job.run);
-        let state = store.put(run, Class::Run, bytes, PATIENCE).await?;
+        let state = store.put(run, Class::Run, bytes).await?;
         let note = StateNote { delivered: self.delivered, iteration, state: state.clone() };
         let Ok(bytes) = pack(&note) else { return Ok(()) };
-        let sequence = store.publish(&self.notes, bytes.into(), None, PATIENCE).await?.sequence;
+        let sequence = store.publish(&self.notes, bytes.into(), None).await?.sequence;
         if matches!(self.job.task, Task::Training { .. }) {
             self.news(vec![Told::Checkpoint { iteration, state: state.clone() }]).await?;
         }

@@ -74,7 +74,10 @@ impl Watch for CandidateUploads {
     }
 
     fn keep(&self, state: &Archive) {
-        // What cannot be packed or sent has to be done again after an interruption.
+        // At the end of a training nobody needs its state. What cannot be packed or sent has to be done again after an interruption.
+        if !self.due() && !self.stopped() {
+            return;
+        }
         if let Ok(bytes) = pack(state) {
             self.pace.sent();
             let _ = self.sender.send(Upload::State(0, bytes));

@@ -31,7 +31,7 @@ fn only_those_who_give_the_same_bits_are_counted() {
         card("b", &same, 2, &["two", "three"], true),
         card("c", &other, 8, &[], false),
     ];
-    let crew = Crew::of(&cards, &same);
+    let crew = Crew::of(&cards, &same, "r");
     assert_eq!((crew.workers, crew.slots, crew.idle), (1, 4, 3));
     // What somebody is at who takes no further jobs is not lost.
     assert_eq!(crew.at_work.iter().map(String::as_str).collect::<Vec<_>>(), ["one", "three", "two"]);

@@ -53,7 +53,10 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
         );
     }
     if args.bind.is_unspecified() && args.host.is_none() {
-        tracing::warn!("{} is how this machine alone reaches the queue; --host names what others call it", server.address);
+        tracing::warn!(
+            "{} is how this machine alone reaches the queue; --host names what others call it",
+            server.address
+        );
     }
     let workers = usize::try_from(args.workers).unwrap_or(usize::MAX);
     let threads = args.threads.map_or_else(|| share(workers), NonZeroUsize::get);

@@ -27,6 +27,8 @@ pub struct ServerOptions {
     pub program: Option<PathBuf>,
     /// Where it listens.
     pub bind: IpAddr,
+    /// What others call this machine: the name that a certificate is for; its address where none is given.
+    pub host: Option<String>,
     /// The port; 4222 or one of the nine behind it where none is named.
     pub port: Option<u16>,
     /// The folder of what it keeps, of its token and of its log.
@@ -35,6 +37,8 @@ pub struct ServerOptions {
     pub most_bytes: u64,
     /// Its certificate and key, for TLS (PEM).
     pub certificate: Option<(PathBuf, PathBuf)>,
+    /// The certificates by which others know it (PEM).
+    pub authority: Option<PathBuf>,
 }
 
 /// Files in the folder of a server.
@@ -88,16 +92,21 @@ impl LocalServer {
         write_private(&config, &configuration(options, folder, port, &crate::server::token(&token)?))
             .map_err(unmade)?;
         let log = File::create(folder.join(Stored::LOG)).map_err(unmade)?;
-        let spawned =
-            Command::new(&program).arg("--config").arg(&config).stdin(lock).stdout(Stdio::null()).stderr(log).spawn();
+        let mut command = Command::new(&program);
+        command.arg("--config").arg(&config).stdin(lock).stdout(Stdio::null()).stderr(log);
+        // Ctrl-C in a terminal is not for it: workers hand it what they have before it ends.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let spawned = command.spawn();
         let child = spawned.map_err(|error| start(&format!("{}: {error}", program.display()), INSTALL))?;
         let address = SocketAddr::new(options.bind, port);
         let scheme = if options.certificate.is_some() { "tls" } else { "nats" };
         let reached = if options.bind.is_unspecified() { SocketAddr::from(([127, 0, 0, 1], port)) } else { address };
+        let called = options.host.as_ref().map_or_else(|| reached.to_string(), |host| format!("{host}:{port}"));
         let server = Server {
-            address: format!("{scheme}://{reached}"),
+            address: format!("{scheme}://{called}"),
             token: Some(token),
-            authority: options.certificate.as_ref().map(|(certificate, _)| certificate.clone()),
+            authority: options.authority.clone(),
             certificate: None,
         };
         let mut local = Self { child, server };
@@ -112,7 +121,8 @@ impl LocalServer {
             if let Ok(Some(status)) = self.child.try_wait() {
                 let text = fs::read_to_string(&log).unwrap_or_default();
                 let fault = text.lines().rev().find(|line| line.contains("[FTL]") || line.contains("[ERR]"));
-                let why = fault.or(text.lines().last()).unwrap_or_default();
+                let last = text.lines().rev().find(|line| !line.trim().is_empty());
+                let why = fault.or(last).unwrap_or("it says nothing");
                 return Err(start(
                     &format!("it ended with {status}: {why}"),
                     &format!("{} has its log", log.display()),

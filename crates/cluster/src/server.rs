@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use async_nats::{Client, ConnectErrorKind, ConnectOptions, Event};
+use async_nats::{Client, ConnectError, ConnectErrorKind, ConnectOptions, Event};
 
 use crate::error::ClusterError;
 
@@ -16,6 +16,24 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const LONGEST_PAUSE: Duration = Duration::from_secs(2);
 /// Messages that may wait for us; those beyond are asked for again.
 const WAITING: usize = 1 << 16;
+
+/// Words of errors between two machines, and the way out.
+const HINTS: [(&str, &str); 7] = [
+    (
+        "CaUsedAsEndEntity",
+        "the server's certificate says that it signs others (CA:TRUE); `openssl req -x509` makes one that does not with \
+         -addext basicConstraints=critical,CA:FALSE",
+    ),
+    ("not valid for name", "use a name in --server that the certificate has"),
+    ("Expired", "the server's certificate is too old: it needs another one; see that this machine's clock is right"),
+    (
+        "invalid peer certificate",
+        "--tls-ca names the certificate of those who signed the server's, or the server's own where it signed itself",
+    ),
+    ("fatal alert", "the server wants to know us, by another certificate than this: --tls-cert and --tls-key name it"),
+    ("InvalidContentType", "the server has no TLS: its address begins with nats://, and --tls-ca and --tls-cert go"),
+    ("timed out", "nobody answers there, or somebody who is no NATS server; see that address and port are right"),
+];
 
 /// A server, and what opens it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -44,9 +62,10 @@ impl Server {
             .event_callback(|event| async move { tell(&event) });
         if let Some(path) = &self.token {
             options = options.token(token(path)?);
+            tell_if_open(path);
         }
         if let Some(path) = &self.authority {
-            readable(path)?;
+            certificates(path)?;
             options = options.add_root_certificates(path.clone()).require_tls(true);
         }
         if let Some((certificate, key)) = &self.certificate {
@@ -63,14 +82,30 @@ impl Server {
         options.connect(&self.address).await.map_err(|error| ClusterError::Connect {
             address: self.address.clone(),
             why: error.to_string(),
-            hint: match error.kind() {
-                ConnectErrorKind::Authentication | ConnectErrorKind::AuthorizationViolation => {
-                    "the server wants a token: --token-file names the file that holds it"
-                }
-                ConnectErrorKind::Tls => "--tls-ca names the certificate by which the server is known",
-                _ => "`hwasp cluster up` starts a server on this machine; see that address and port are right",
-            },
+            hint: self.hint(&error),
         })
+    }
+
+    /// The way out where there is no connection.
+    fn hint(&self, error: &ConnectError) -> &'static str {
+        match error.kind() {
+            ConnectErrorKind::Authentication | ConnectErrorKind::AuthorizationViolation if self.token.is_some() => {
+                "the server has another token than the one in the file that --token-file names"
+            }
+            ConnectErrorKind::Authentication | ConnectErrorKind::AuthorizationViolation => {
+                "the server wants a token: --token-file names the file that holds it"
+            }
+            ConnectErrorKind::Tls => "--tls-ca, --tls-cert and --tls-key name files with certificates and a key, PEM",
+            _ => {
+                // What goes wrong in TLS comes as an error of the network: its words say what it was.
+                let why = error.to_string();
+                let known = HINTS.iter().find(|(words, _)| why.contains(words));
+                known.map_or(
+                    "`hwasp cluster up` starts a server on this machine; see that address and port are right",
+                    |(_, hint)| hint,
+                )
+            }
+        }
     }
 
     fn is_private(&self) -> bool {
@@ -103,6 +138,23 @@ fn is_loopback(host: &str) -> bool {
 
 fn readable(path: &Path) -> Result<(), ClusterError> {
     fs::File::open(path).map(drop).map_err(|error| file(path, &error))
+}
+
+/// Whether a file has certificates: one without any would be taken for nobody's.
+fn certificates(path: &Path) -> Result<(), ClusterError> {
+    let bytes = fs::read(path).map_err(|error| file(path, &error))?;
+    let there = String::from_utf8_lossy(&bytes).contains("-----BEGIN CERTIFICATE-----");
+    if there { Ok(()) } else { Err(file(path, &"it has no certificate (PEM)")) }
+}
+
+/// Tells of a file with a token that everybody on this machine can read.
+fn tell_if_open(path: &Path) {
+    #[cfg(unix)]
+    if let Ok(about) = fs::metadata(path)
+        && std::os::unix::fs::PermissionsExt::mode(&about.permissions()) & 0o007 != 0
+    {
+        tracing::warn!("everybody on this machine can read the token in {}: `chmod 600` keeps it", path.display());
+    }
 }
 
 fn file(path: &Path, why: &dyn std::fmt::Display) -> ClusterError {

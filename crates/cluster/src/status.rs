@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use async_nats::jetstream::consumer::pull;
 use serde::Serialize;
 
 use crate::client::call;
@@ -70,16 +69,8 @@ async fn ask(server: &Server) -> Result<Status, ClusterError> {
     let jobs = store.jobs().await.map_err(queue)?;
     let messages = jobs.get_info().await.map_err(|error| queue(error.to_string()))?.state.messages;
     let round_trip_ms = store.round_trip.as_secs_f64() * 1e3;
-    let mut at_work = 0;
-    let digests: std::collections::BTreeSet<String> = cards.iter().map(|card| card.identity.digest()).collect();
-    for digest in digests {
-        let consumer = jobs.get_consumer::<pull::Config>(&subjects::consumer(&digest)).await;
-        if let Ok(mut consumer) = consumer
-            && let Ok(info) = consumer.info().await
-        {
-            at_work += info.num_ack_pending as u64;
-        }
-    }
+    // As workers say: what was given back counts as waiting at once.
+    let at_work = cards.iter().map(|card| card.at_work.len() as u64).sum();
     let data = store.data().await.map_err(queue)?;
     let mut found = data.info_with_subjects(subjects::ALL_DATA).await.map_err(|error| queue(error.to_string()))?;
     let mut runs = BTreeMap::new();

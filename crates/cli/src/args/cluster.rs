@@ -98,6 +98,9 @@ pub(crate) struct UpArgs {
     /// The address where the queue listens. Elsewhere than on loopback take --tls-cert and --tls-key, too
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
     pub(crate) bind: IpAddr,
+    /// What others call this machine, as the certificate does [default: the address where it listens]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub(crate) host: Option<String>,
     /// Its port [default: 4222, or one of the nine behind it]
     #[arg(long, allow_negative_numbers = true, value_parser = whole(1..=65_535))]
     pub(crate) port: Option<u64>,
@@ -113,7 +116,10 @@ pub(crate) struct UpArgs {
     /// Its key, PEM
     #[arg(long, value_name = "FILE", value_parser = path(), requires = "tls_cert")]
     pub(crate) tls_key: Option<PathBuf>,
-    /// Write the queue's address into this file once it listens
+    /// The certificates by which workers know it, PEM [default: its own, for one that signed itself]
+    #[arg(long, value_name = "FILE", value_parser = path(), requires = "tls_cert")]
+    pub(crate) tls_ca: Option<PathBuf>,
+    /// Keep the queue's address in this file as long as it listens
     #[arg(long, value_name = "FILE", value_parser = path())]
     pub(crate) address_file: Option<PathBuf>,
     /// The program `nats-server`, where it is not on the path
@@ -156,8 +162,8 @@ pub(crate) struct SlurmArgs {
     /// Threads of each
     #[arg(long, default_value = "4", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: NonZeroUsize,
-    /// The partition [default: Slurm's]
-    #[arg(long, value_parser = name)]
+    /// The partition, or several with commas [default: Slurm's]
+    #[arg(long, value_parser = partitions)]
     pub(crate) partition: Option<String>,
     /// Time limit, as Slurm writes it
     #[arg(long, default_value = "12:00:00", value_parser = slurm_time)]
@@ -165,6 +171,14 @@ pub(crate) struct SlurmArgs {
     /// Memory of a worker, as Slurm writes it
     #[arg(long, default_value = "4G", value_parser = slurm_memory)]
     pub(crate) memory: String,
+    /// The program `nats-server`, where it is not on the nodes' path
+    #[arg(long, value_name = "FILE", value_parser = path())]
+    pub(crate) nats_server: Option<PathBuf>,
+}
+
+/// Names of partitions.
+fn partitions(text: &str) -> Result<String, String> {
+    text.split(',').map(name).collect::<Result<Vec<_>, _>>().map(|names| names.join(","))
 }
 
 /// A time as Slurm has it: minutes, hours:minutes:seconds, days-hours:minutes:seconds.

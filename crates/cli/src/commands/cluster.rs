@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -9,7 +10,7 @@ use std::time::{Duration, Instant};
 use hwasp_cluster::{LocalServer, Scripts, Server, ServerOptions, SlurmOptions, measure, status};
 use hwasp_experiment::Catalogue;
 
-use super::{stop_on_signal, write_out};
+use super::{stop_on_signal, unwritten, write_out};
 use crate::args::{ClusterArgs, ClusterCommand, MeasureArgs, SlurmArgs, StatusArgs, UpArgs};
 use crate::{log, output, report};
 use hwasp_session::Failure;
@@ -41,6 +42,8 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
         store: args.store.clone(),
         most_bytes: args.most * 1_000_000_000,
         certificate: args.tls_cert.clone().zip(args.tls_key.clone()),
+        authority: args.tls_ca.as_ref().or(args.tls_cert.as_ref()).map(std::path::absolute).transpose()?,
+        host: args.host.clone(),
     };
     let mut local = LocalServer::start(&options).map_err(Failure::input)?;
     let server = local.server.clone();
@@ -49,16 +52,21 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
             "the queue can be reached from other machines, and without TLS its token can be read on the way"
         );
     }
+    if args.bind.is_unspecified() && args.host.is_none() {
+        tracing::warn!(
+            "{} is how this machine alone reaches the queue; --host names what others call it",
+            server.address
+        );
+    }
     let workers = usize::try_from(args.workers).unwrap_or(usize::MAX);
     let threads = args.threads.map_or_else(|| share(workers), NonZeroUsize::get);
     let mut crew: Vec<Started> = (0..workers).map(|i| Started::new(i, threads, &server)).collect::<Result<_, _>>()?;
-    if let Some(path) = &args.address_file {
-        write_out(path, &format!("{}\n", server.address))?;
-    }
+    let _address = args.address_file.as_deref().map(|path| AddressFile::write(path, &server.address)).transpose()?;
     output::print(&told(&server, workers, threads))?;
     while !stop.load(Ordering::Relaxed) {
         std::thread::sleep(LOOK);
-        if local.ended() {
+        // A signal to all processes of a job ends the queue, too.
+        if local.ended() && !stop.load(Ordering::Relaxed) {
             crew.iter_mut().for_each(Started::ask_to_end);
             let log = args.store.join(hwasp_cluster::Stored::LOG);
             return Err(Failure::from(std::io::Error::other("the queue has ended by itself"))
@@ -78,6 +86,25 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The file that has the queue's address as long as the queue is there: who reads it later waits for the next one.
+struct AddressFile<'a>(&'a Path);
+
+impl<'a> AddressFile<'a> {
+    fn write(path: &'a Path, address: &str) -> Result<Self, Failure> {
+        fs::write(path, format!("{address}\n")).map_err(|error| {
+            let error = std::io::Error::new(error.kind(), format!("`{}` cannot be written: {error}", path.display()));
+            Failure::from(error).hint("name a file in a folder that is there and may be written, with --address-file")
+        })?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for AddressFile<'_> {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(self.0);
+    }
+}
+
 /// What there is now, and what to do with it.
 fn told(server: &Server, workers: usize, threads: usize) -> String {
     let token =
@@ -87,8 +114,8 @@ fn told(server: &Server, workers: usize, threads: usize) -> String {
     let address = &server.address;
     let there = match workers {
         0 => "no workers".to_owned(),
-        1 => format!("a worker of {threads} threads"),
-        _ => format!("{workers} workers of {threads} threads each"),
+        1 => format!("a worker, {threads} jobs at once"),
+        _ => format!("{workers} workers, {threads} jobs at once each"),
     };
     format!(
         "{address}: a queue, and {there}. Ctrl-C ends all of it.\n\n  \
@@ -175,8 +202,10 @@ fn measured(args: &MeasureArgs, catalogue: &Catalogue) -> Result<(), Failure> {
 
 fn slurm(args: &SlurmArgs) -> Result<(), Failure> {
     let shared = std::path::absolute(&args.shared)?;
+    let nats_server = args.nats_server.as_ref().map(std::path::absolute).transpose()?;
     let options = SlurmOptions {
         program: std::env::current_exe()?.display().to_string(),
+        nats_server: nats_server.map(|path| path.display().to_string()),
         folder: shared.display().to_string(),
         partition: args.partition.clone(),
         time: args.time.clone(),
@@ -185,15 +214,15 @@ fn slurm(args: &SlurmArgs) -> Result<(), Failure> {
         threads: args.threads.get() as u64,
     };
     let Scripts { server, workers } = Scripts::new(&options);
-    fs::create_dir_all(&args.out)?;
+    fs::create_dir_all(&args.out).map_err(|error| unwritten(&args.out, &error))?;
     let (first, second) = (args.out.join("server.sbatch"), args.out.join("workers.sbatch"));
     write_out(&first, &server)?;
     write_out(&second, &workers)?;
     let (first, second) = (output::shell(&first), output::shell(&second));
     let (address, token) = (shared.join("address"), shared.join("queue/token"));
     Ok(output::print(&format!(
-        "sbatch {first}      the queue, on a node of its own\n\
-         sbatch {second}     {} workers of {} threads\n\n\
+        "sbatch {first}      the queue; it needs little, and has to outlive the trainings\n\
+         sbatch {second}     workers: {}, {} jobs at once each\n\n\
          hwasp train EXPERIMENT --server \"$(cat {})\" --token-file {}\n",
         args.workers,
         args.threads,

@@ -245,3 +245,20 @@ pub(crate) type State = Archive;
 pub(crate) const PROGRESS: Duration = Duration::from_secs(4);
 /// How long the queue waits for that before it hands the job to another one.
 pub(crate) const ACK_WAIT: Duration = Duration::from_secs(15);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_from_elsewhere_cannot_claim_more_than_it_may_be() {
+        let zeros = vec![0_u8; 1 << 20];
+        let packed = pack(&zeros).unwrap();
+        assert_eq!(unpack::<Vec<u8>>(&packed).unwrap(), zeros, "the most that compression does");
+        let huge = [&(1_u32 << 29).to_le_bytes()[..], &packed[4..40]].concat();
+        assert!(unpack::<Vec<u8>>(&huge).unwrap_err().contains("that may be"));
+        for cut in 0..packed.len().min(64) {
+            assert!(unpack::<Vec<u8>>(&packed[..cut]).is_err());
+        }
+    }
+}

@@ -5,6 +5,7 @@ mod collector;
 mod crew;
 mod run;
 mod trainer;
+mod waiting;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;

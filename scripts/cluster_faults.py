@@ -349,6 +349,10 @@ def identity(asked):
         site.end()
 
 
+def break_off(*_):
+    raise KeyboardInterrupt
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
@@ -372,8 +376,8 @@ def main():
     asked = Asked(args.program.resolve(), args.nats_server, root, args.other, args.seed)
     times, began = 1 if args.quick else args.times, time.monotonic()
     print(f"seed {args.seed}, folder {root}", flush=True)
-    stop = lambda *_: os.kill(os.getpid(), signal.SIGINT)
-    signal.signal(signal.SIGTERM, stop)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, break_off)
     rows = []
     try:
         for number, fault in enumerate(faults):

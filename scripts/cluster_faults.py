@@ -35,7 +35,6 @@ from cluster_site import Client, Hang, Lost, Networks, Site, clean, disguised, g
 # The longest time of a run with a fault, s: a cut of 30 s, twice the 15 s until a job of somebody silent is handed on, and the work.
 LIMIT = 180
 CUT = 30
-# By how much more than an undisturbed run one may take, s, before it is told.
 INNER = ["--env-steps", "3e6", "--set", "search.inner_env_steps=300000"]
 WORKS = {
     "trpo": ["train", "z-grasp", "--env-steps", "40000", "--set", "train.evaluation_episodes=40"],
@@ -75,7 +74,7 @@ class Try:
         self.asked, self.fault, self.name = asked, fault, f"{fault.name}-{number}"
         self.draw = random.Random(f"{asked.seed} {self.name}")
         self.work = fault.works[number % len(fault.works)]
-        self.note, self.missed, self.site, self.process = "", False, None, None
+        self.note, self.missed, self.site, self.process = f" {self.work}", False, None, None
         self.out = asked.root / self.name / "run"
 
     def begin(self):
@@ -89,6 +88,10 @@ class Try:
     def coordinate(self):
         """Begins the work, or goes on with it."""
         work = WORKS[self.work]
+        if (self.out / "summary.json").exists():
+            # It was done when it was killed.
+            self.missed, self.process = True, None
+            return
         resumed = work[0] == "train" and (self.out / "experiment.toml").exists()
         if work[0] == "train" and not resumed:
             shutil.rmtree(self.out, ignore_errors=True)
@@ -97,12 +100,12 @@ class Try:
     def moment(self, first=0.1, last=0.8):
         """Waits for a moment within the work."""
         wait = self.draw.uniform(first, last) * self.asked.times.get(self.work, 0.0)
-        self.note += f" {self.work} +{wait:.2f} s"
+        self.note += f" +{wait:.2f} s"
         wait_until(lambda: time.monotonic() - self.began > wait or self.done(), LIMIT, "the moment did not come")
         self.missed = self.missed or self.done()
 
     def done(self):
-        return self.process.poll() is not None
+        return self.process is None or self.process.poll() is not None
 
     def sleep(self, seconds):
         end = time.monotonic() + seconds
@@ -111,7 +114,7 @@ class Try:
     def finish(self):
         wait_until(self.done, LIMIT - (time.monotonic() - self.began), "the run did not end")
         took = time.monotonic() - self.began
-        if self.process.returncode != 0:
+        if self.process and self.process.returncode != 0:
             raise Lost(f"the coordinator ended with status {self.process.returncode}")
         return took
 
@@ -175,8 +178,6 @@ def twice(t):
     """Every job is there twice, or three times."""
     client, seen = Client(t.site.port), set()
     client.subscribe("hwasp.jobs.>")
-    t.process.send_signal(signal.SIGCONT)
-    t.moment(0.0, 0.3)
     while not t.done() and time.monotonic() - t.began < LIMIT:
         message = client.read(0.1)
         if message and message not in seen:
@@ -348,6 +349,10 @@ def identity(asked):
         site.end()
 
 
+def break_off(*_):
+    raise KeyboardInterrupt
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
@@ -371,8 +376,8 @@ def main():
     asked = Asked(args.program.resolve(), args.nats_server, root, args.other, args.seed)
     times, began = 1 if args.quick else args.times, time.monotonic()
     print(f"seed {args.seed}, folder {root}", flush=True)
-    stop = lambda *_: os.kill(os.getpid(), signal.SIGINT)
-    signal.signal(signal.SIGTERM, stop)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, break_off)
     rows = []
     try:
         for number, fault in enumerate(faults):

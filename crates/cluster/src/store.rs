@@ -1,5 +1,6 @@
 //! What the server keeps: streams, values under their hashes, notes of jobs.
 
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use async_nats::Client;
@@ -8,7 +9,9 @@ use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
 use async_nats::jetstream::context::{Context, ContextBuilder, PublishError, PublishErrorKind};
 use async_nats::jetstream::message::PublishMessage;
 use async_nats::jetstream::publish::PublishAck;
-use async_nats::jetstream::stream::{self, DirectGetErrorKind, DiscardPolicy, RetentionPolicy, StorageType, Stream};
+use async_nats::jetstream::stream::{
+    self, DirectGetError, DirectGetErrorKind, DiscardPolicy, RetentionPolicy, StorageType, Stream,
+};
 use bytes::{Bytes, BytesMut};
 
 use crate::error::ClusterError;
@@ -65,6 +68,15 @@ impl Store {
         store.ensure().await.map_err(queue)?;
         store.round_trip = began.elapsed() / 2;
         Ok(store)
+    }
+
+    fn is_connected(&self) -> bool {
+        self.client.connection_state() == State::Connected
+    }
+
+    /// How often there was a new connection.
+    pub(crate) fn connects(&self) -> u64 {
+        self.client.statistics().connects.load(Ordering::Relaxed)
     }
 
     async fn ensure(&self) -> Result<(), String> {
@@ -154,7 +166,7 @@ impl Store {
 
     async fn publish_once(&self, subject: &str, bytes: Bytes, id: Option<&str>) -> Result<PublishAck, PublishError> {
         // The client would keep what is sent now for later, each attempt of it.
-        if self.client.connection_state() != State::Connected {
+        if !self.is_connected() {
             return Err(PublishError::new(PublishErrorKind::BrokenPipe));
         }
         let message = PublishMessage::build().payload(bytes);
@@ -244,16 +256,12 @@ impl Store {
     /// Reads, and tries again while the server is away.
     async fn read<T, F>(&self, get: impl Fn(Stream<()>) -> F) -> Result<Option<T>, StoreError>
     where
-        F: Future<Output = Result<T, async_nats::jetstream::stream::DirectGetError>>,
+        F: Future<Output = Result<T, DirectGetError>>,
     {
         let (began, mut pause) = (Instant::now(), PAUSE[0]);
         loop {
-            let why = match self.data().await {
-                Ok(data) => match get(data).await {
-                    Ok(found) => return Ok(Some(found)),
-                    Err(error) if error.kind() == DirectGetErrorKind::NotFound => return Ok(None),
-                    Err(error) => error.to_string(),
-                },
+            let why = match self.read_once(&get).await {
+                Ok(found) => return Ok(found),
                 Err(why) => why,
             };
             if began.elapsed() >= self.patience {
@@ -261,8 +269,24 @@ impl Store {
             }
             tokio::time::sleep(pause).await;
             pause = (2 * pause).min(PAUSE[1]);
-            // Where it came back with an empty store, nothing is there.
-            let _ = self.ensure().await;
+        }
+    }
+
+    async fn read_once<T, F>(&self, get: &impl Fn(Stream<()>) -> F) -> Result<Option<T>, String>
+    where
+        F: Future<Output = Result<T, DirectGetError>>,
+    {
+        if !self.is_connected() {
+            return Err("there is no connection".to_owned());
+        }
+        match get(self.data().await?).await {
+            Ok(found) => Ok(Some(found)),
+            Err(error) if error.kind() == DirectGetErrorKind::NotFound => Ok(None),
+            Err(error) => {
+                // Where it came back with an empty store, nothing is there.
+                self.ensure().await?;
+                Err(error.to_string())
+            }
         }
     }
 

@@ -10,6 +10,8 @@ pub(crate) const ALL_DATA: &str = "hwasp.data.>";
 pub(crate) const CALL: &str = "hwasp.call";
 /// Of runs that somebody stopped; the run follows.
 pub(crate) const STOPS: &str = "hwasp.stop.*";
+/// What is said there of a run that nobody will go on with.
+pub(crate) const OVER: &[u8] = b"over";
 
 /// Jobs of a run, for workers of one identity.
 pub(crate) fn jobs(identity: &str, run: &str) -> String {

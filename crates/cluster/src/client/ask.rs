@@ -1,20 +1,23 @@
 //! Asking: a job goes into the queue, and its answer is waited for, whatever happens to workers and server meanwhile.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::collections::{BTreeMap, BTreeSet};
+use std::pin::pin;
+use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use bytes::Bytes;
 use futures_util::StreamExt;
+use futures_util::future::{Either, select};
 use hwasp_training::collect::{CollectError, ExperimentText};
-use tokio::sync::{Notify, oneshot};
+use tokio::sync::Notify;
 
 use super::crew::{Crew, call};
-use super::run::RunName;
+use super::run::{self, RunName};
+use super::waiting::Waiting;
 use crate::error::ClusterError;
 use crate::identity::Identity;
-use crate::message::{Class, Envelope, Job, Kept, Named, Payload, StateNote, Task, pack, unpack};
+use crate::message::{Class, Envelope, Job, Kept, Named, Payload, Task, pack, unpack};
 use crate::store::{INLINE, Store};
 use crate::subjects;
 
@@ -53,9 +56,9 @@ pub(crate) struct Asker {
     address: String,
     patience: Duration,
     /// Who waits for which job.
-    waiting: Mutex<HashMap<String, Vec<oneshot::Sender<Envelope>>>>,
+    waiting: Waiting,
     /// Who waits for news of which job.
-    news: Mutex<HashMap<String, Arc<Notify>>>,
+    news: Mutex<BTreeMap<String, Arc<Notify>>>,
     /// Jobs whose answers were there before we began.
     before: BTreeSet<String>,
     /// Experiments that are kept.
@@ -91,13 +94,13 @@ impl Asker {
     ) -> Result<Arc<Self>, ClusterError> {
         let queue = |why: String| ClusterError::Queue { address: address.to_owned(), why };
         let run = run.as_str().to_owned();
-        let before = answered(&store, &run).await.map_err(queue)?;
+        let before = run::answered(&store, &run).await.map_err(queue)?;
         let asker = Arc::new(Self {
             digest: identity.digest(),
             identity,
             address: address.to_owned(),
             patience,
-            waiting: Mutex::default(),
+            waiting: Waiting::default(),
             news: Mutex::default(),
             before,
             experiments: Mutex::default(),
@@ -114,15 +117,14 @@ impl Asker {
         asker.look_round().await;
         let called = Arc::clone(&asker);
         tokio::spawn(async move {
-            let connects = &called.store.client.statistics().connects;
-            let mut before = connects.load(Ordering::Relaxed);
+            let mut before = called.store.connects();
             loop {
                 tokio::time::sleep(CALLS).await;
-                let now = connects.load(Ordering::Relaxed);
+                let now = called.store.connects();
                 if std::mem::replace(&mut before, now) != now {
                     called.back.notify_waiters();
                 }
-                if !lock(&called.waiting).is_empty() {
+                if !called.waiting.is_empty() {
                     called.look_round().await;
                 }
             }
@@ -170,10 +172,7 @@ impl Asker {
             }
         };
         *lock(&self.sign) = Instant::now();
-        // Of a job that was done twice, the second answer waits for nobody.
-        for waiting in lock(&self.waiting).remove(&envelope.job).unwrap_or_default() {
-            let _ = waiting.send(envelope.clone());
-        }
+        self.waiting.hand(&envelope);
     }
 
     fn tell_once(&self, what: &str, tell: impl FnOnce()) {
@@ -251,18 +250,13 @@ impl Asker {
     /// lost it.
     pub(super) async fn ask(&self, job: &Job, needs: &[Need]) -> Result<Reply, CollectError> {
         let reply = self.asked(job, needs).await;
-        // Where the answer was found otherwise, nobody waits for the message with it.
-        let mut waiting = lock(&self.waiting);
-        if let Some(senders) = waiting.get_mut(&job.name) {
-            senders.retain(|sender| !sender.is_closed());
-        }
-        waiting.retain(|name, senders| *name != job.name || !senders.is_empty());
+        self.waiting.tidy(&job.name);
         reply
     }
 
     async fn asked(&self, job: &Job, needs: &[Need]) -> Result<Reply, CollectError> {
         let (kind, began) = (job.task.kind(), Instant::now());
-        let mut receiver = self.wait_for(&job.name);
+        let mut receiver = self.waiting.wait_for(&job.name);
         if self.before.contains(&job.name)
             && let Some(reply) = self.look(job).await?
         {
@@ -272,19 +266,19 @@ impl Asker {
         let mut sequence = if self.is_at_work(job) { None } else { Some(self.publish(job, 0).await?) };
         let (mut look, mut asked) = (LOOKS[0], 1_u32);
         loop {
-            let told = tokio::time::timeout(look, &mut receiver);
-            let found = match until(told, self.back.notified()).await {
-                Some(Ok(envelope)) => {
+            let back = pin!(self.back.notified());
+            let found = match tokio::time::timeout(look, select(&mut receiver, back)).await {
+                Ok(Either::Left((Ok(envelope), _))) => {
                     let reply = self.reply(&envelope).await;
                     if reply.is_none() {
                         // Its bytes are lost; it is asked for once more.
-                        receiver = self.wait_for(&job.name);
+                        receiver = self.waiting.wait_for(&job.name);
                     }
                     reply
                 }
                 // Nobody hands an envelope on any more: the list was cleared.
-                Some(Err(_)) => return Err(CollectError::Interrupted),
-                None => self.look(job).await?,
+                Ok(Either::Left((Err(_), _))) => return Err(CollectError::Interrupted),
+                Ok(Either::Right(_)) | Err(_) => self.look(job).await?,
             };
             if let Some(reply) = found {
                 self.timed(kind, reply.seconds);
@@ -309,12 +303,6 @@ impl Asker {
 
     fn is_at_work(&self, job: &Job) -> bool {
         lock(&self.crew).at_work.contains(&job.name)
-    }
-
-    fn wait_for(&self, job: &str) -> oneshot::Receiver<Envelope> {
-        let (sender, receiver) = oneshot::channel();
-        lock(&self.waiting).entry(job.to_owned()).or_default().push(sender);
-        receiver
     }
 
     /// Looks whether the answer of a job is kept.
@@ -343,24 +331,6 @@ impl Asker {
 
     pub(super) fn silence(&self, job: &str) {
         lock(&self.news).remove(job);
-    }
-
-    /// Removes what is said of a job, so that it is begun anew.
-    pub(super) async fn forget(&self, job: &str) {
-        for what in ["answer", "news", "state"] {
-            self.store.remove(subjects::said(&self.run, what, job)).await;
-        }
-    }
-
-    /// Removes the state of a job that is done.
-    pub(super) async fn forget_state(&self, job: &str) {
-        let notes = subjects::said(&self.run, "state", job);
-        if let Ok(Some(bytes)) = self.store.last(&notes).await
-            && let Ok(note) = unpack::<StateNote>(&bytes)
-        {
-            self.store.drop(&self.run, &note.state).await;
-            self.store.remove(notes).await;
-        }
     }
 
     async fn publish(&self, job: &Job, asked: u32) -> Result<u64, CollectError> {
@@ -416,61 +386,15 @@ impl Asker {
 
     /// Removes answers that were in a checkpoint already when this was called before.
     pub(super) async fn settle(&self) {
-        let Ok(data) = self.store.data().await else { return };
-        let Ok(info) = data.get_info().await else { return };
-        let before = self.mark.swap(info.state.last_sequence, Ordering::Relaxed);
-        if before > 0 {
-            self.store.remove_before(&subjects::said(&self.run, "answer", "*"), before).await;
-            self.store.remove_before(&subjects::parts_of(&self.run, Class::Iteration.word()), before).await;
-        }
+        run::settle(&self.store, &self.run, &self.mark).await;
     }
 
     pub(super) async fn stop_run(self: Arc<Self>) {
-        let _ = tokio::time::timeout(FAREWELL, self.end_work()).await;
-        lock(&self.waiting).clear();
+        let _ = tokio::time::timeout(FAREWELL, run::end(&self.store, &self.digest, &self.run, &[])).await;
+        self.waiting.clear();
     }
 
     pub(super) async fn forget_run(self: Arc<Self>) {
-        let _ = tokio::time::timeout(FAREWELL, self.remove_run()).await;
+        let _ = tokio::time::timeout(FAREWELL, run::forget(&self.store, &self.digest, &self.run)).await;
     }
-
-    /// Removes the jobs of the run, and has workers end with those that they are at.
-    async fn end_work(&self) {
-        if let Ok(jobs) = self.store.jobs().await {
-            let _ = jobs.purge().filter(subjects::jobs(&self.digest, &self.run)).await;
-        }
-        let _ = self.store.client.publish(subjects::stop(&self.run), Bytes::new()).await;
-        let _ = self.store.client.flush().await;
-    }
-
-    /// Removes all that is kept of the run.
-    async fn remove_run(&self) {
-        // Somebody may be at what was asked for twice.
-        self.end_work().await;
-        self.store.remove(subjects::data(&self.run)).await;
-    }
-}
-
-/// Waits for a future until another one is there first.
-async fn until<T>(
-    wanted: impl Future<Output = Result<T, tokio::time::error::Elapsed>>,
-    end: impl Future<Output = ()>,
-) -> Option<T> {
-    match futures_util::future::select(std::pin::pin!(wanted), std::pin::pin!(end)).await {
-        futures_util::future::Either::Left((found, _)) => found.ok(),
-        futures_util::future::Either::Right(_) => None,
-    }
-}
-
-/// The names of the jobs of a run whose answers are kept.
-async fn answered(store: &Store, run: &str) -> Result<BTreeSet<String>, String> {
-    let data = store.data().await?;
-    let mut subjects =
-        data.info_with_subjects(subjects::said(run, "answer", "*")).await.map_err(|error| error.to_string())?;
-    let mut names = BTreeSet::new();
-    while let Some(subject) = subjects.next().await {
-        let (subject, _) = subject.map_err(|error| error.to_string())?;
-        names.extend(subject.rsplit('.').next().map(str::to_owned));
-    }
-    Ok(names)
 }

@@ -12,6 +12,7 @@ use hwasp_training::{Assembly, Collector, LocalCollector};
 
 use super::Cluster;
 use super::ask::{Asker, Need, Reply};
+use super::run::forget_state;
 use crate::message::{Block, Class, Content, Params, Payload, Task, pack, unpack};
 
 /// Work of less time than this is done here: the way to a worker and back takes as long. Seconds.
@@ -208,7 +209,7 @@ impl Collector for RemoteCollector<'_> {
             // Who asked may be gone.
             let _ = sender.send(answer);
             if let Some(name) = name {
-                asker.forget_state(&name).await;
+                forget_state(&asker.store, &asker.run, &name).await;
             }
         });
         loop {

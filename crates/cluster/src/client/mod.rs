@@ -6,6 +6,7 @@ mod crew;
 mod measure;
 mod run;
 mod trainer;
+mod waiting;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;

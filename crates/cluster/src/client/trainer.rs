@@ -14,6 +14,7 @@ use tokio::sync::Notify;
 
 use super::Cluster;
 use super::ask::{Asker, Need};
+use super::run;
 use crate::message::{Class, Job, News, Payload, Task, Told, TrainingAnswer, pack, unpack};
 use crate::store::StoreError;
 use crate::subjects;
@@ -154,14 +155,14 @@ async fn follow(
     if let TrainingAnswer::Trained(trained) = &answer
         && reader.known < trained.iterations
     {
-        asker.forget(&job.name).await;
+        run::forget_job(&asker.store, &asker.run, &job.name).await;
         return Err(CollectError::Unanswered(format!(
             "the server lost what was told of iteration {}; the same command again goes on before it",
             reader.known
         )));
     }
     // News stay until the run is over: who goes on after the next line of code may not have them yet.
-    asker.forget_state(&job.name).await;
+    run::forget_state(&asker.store, &asker.run, &job.name).await;
     Ok(answer)
 }
 

@@ -3,10 +3,11 @@
 mod card;
 mod service;
 mod uploads;
+mod work;
 
 use std::num::NonZeroUsize;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use hwasp_experiment::Catalogue;
@@ -25,8 +26,13 @@ pub use self::card::Card;
 const LOOK: Duration = Duration::from_millis(200);
 /// How long an answer is tried to be kept. Then the job goes back to the queue.
 const PATIENCE: Duration = Duration::from_mins(2);
-/// How long acknowledgements may take at the end.
-const FAREWELL: Duration = Duration::from_secs(5);
+/// How long it may take to send what is not sent yet.
+const FLUSH: Duration = Duration::from_secs(5);
+
+/// Locks a list.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().expect("nothing panics while a list is locked")
+}
 
 /// A worker that is asked for.
 #[derive(Clone, Debug)]
@@ -66,6 +72,8 @@ pub fn serve(
         let store = Store::open(client, &options.server.address, PATIENCE).await?;
         let service = Service::new(options, store, catalogue, identity, Arc::clone(stop));
         let listeners = service.listen().await?;
+        // Whoever is told that it is ready is answered.
+        let _ = tokio::time::timeout(FLUSH, service.store.client.flush()).await;
         ready();
         let slots: Vec<_> = (0..options.threads.get()).map(|_| tokio::spawn(Arc::clone(&service).slot())).collect();
         while !stop.load(Ordering::Relaxed) {
@@ -81,7 +89,7 @@ pub fn serve(
             listener.abort();
         }
         // Acknowledgements may still be on the way.
-        let _ = tokio::time::timeout(FAREWELL, service.store.client.flush()).await;
+        let _ = tokio::time::timeout(FLUSH, service.store.client.flush()).await;
         Ok(service.served())
     })
 }

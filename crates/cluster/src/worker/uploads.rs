@@ -7,9 +7,11 @@ use std::time::{Duration, Instant};
 use hwasp_algos::Archive;
 use hwasp_training::collect::Watch;
 use hwasp_training::{Checkpoint, Event, Observer, ObserverError};
-use tokio::sync::mpsc::UnboundedSender;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender};
 
-use crate::message::{Told, pack};
+use crate::message::{Class, Job, News, Payload, StateNote, Task, Told, pack};
+use crate::store::{Store, StoreError};
+use crate::subjects;
 
 /// Time between two states, at least.
 const STATE_EVERY: Duration = Duration::from_secs(20);
@@ -26,6 +28,30 @@ pub(super) enum Upload {
     State(u64, Vec<u8>),
     /// News without states.
     News(Vec<Told>),
+}
+
+/// What ends a job before its time.
+#[derive(Default)]
+pub(super) struct Ends {
+    now: Arc<AtomicBool>,
+    over: AtomicBool,
+}
+
+impl Ends {
+    /// Ends it. `over`: nobody will go on with it, so that nothing of it is kept.
+    pub(super) fn end(&self, over: bool) {
+        self.over.fetch_or(over, Ordering::Relaxed);
+        self.now.store(true, Ordering::Relaxed);
+    }
+
+    /// Set as soon as somebody wants it to end.
+    pub(super) fn now(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.now)
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.over.load(Ordering::Relaxed)
+    }
 }
 
 /// When states are sent, and what ends the job.
@@ -147,5 +173,70 @@ impl Observer for TrainingUploads {
 
     fn due(&self) -> bool {
         self.pace.due()
+    }
+}
+
+/// What a long job sends on the way.
+pub(super) struct Uploads<'a> {
+    pub(super) store: &'a Store,
+    pub(super) job: &'a Job,
+    /// How often the job was handed out.
+    pub(super) delivered: u64,
+    /// The subject of its states.
+    pub(super) notes: String,
+    /// The last state that is kept.
+    pub(super) old: Option<Payload>,
+}
+
+impl Uploads<'_> {
+    /// Sends until the job is over. Where the server keeps nothing, the job is ended: another worker goes on from what is kept.
+    pub(super) async fn send(
+        mut self,
+        mut receiver: UnboundedReceiver<Upload>,
+        waiting: &AtomicBool,
+        ends: &Ends,
+    ) -> Result<(), StoreError> {
+        while let Some(upload) = receiver.recv().await {
+            let sent = match upload {
+                _ if ends.is_over() => Ok(()),
+                Upload::News(news) => self.news(news).await,
+                Upload::State(iteration, bytes) => {
+                    let sent = self.state(iteration, bytes).await;
+                    waiting.store(false, Ordering::Relaxed);
+                    sent
+                }
+            };
+            if sent.is_err() {
+                ends.end(false);
+                return sent;
+            }
+        }
+        Ok(())
+    }
+
+    async fn news(&self, news: Vec<Told>) -> Result<(), StoreError> {
+        let (store, run) = (self.store, &self.job.run);
+        let Ok(bytes) = pack(&News(news)) else { return Ok(()) };
+        let payload = store.put(run, Class::Run, bytes).await?;
+        let Ok(bytes) = pack(&payload) else { return Ok(()) };
+        let subject = subjects::said(run, "news", &self.job.name);
+        store.publish(&subject, bytes.into(), None).await.map(drop)
+    }
+
+    async fn state(&mut self, iteration: u64, bytes: Vec<u8>) -> Result<(), StoreError> {
+        let (store, run) = (self.store, &self.job.run);
+        let state = store.put(run, Class::Run, bytes).await?;
+        let note = StateNote { delivered: self.delivered, iteration, state: state.clone() };
+        let Ok(bytes) = pack(&note) else { return Ok(()) };
+        let sequence = store.publish(&self.notes, bytes.into(), None).await?.sequence;
+        if matches!(self.job.task, Task::Training { .. }) {
+            self.news(vec![Told::Checkpoint { iteration, state: state.clone() }]).await?;
+        }
+        // The one before is not needed any more.
+        store.remove_before(&self.notes, sequence).await;
+        if let Some(old) = self.old.replace(state).filter(|old| Some(old) != self.old.as_ref()) {
+            store.drop(run, &old).await;
+        }
+        Ok(())
     }
 }

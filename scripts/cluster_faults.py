@@ -15,273 +15,20 @@ All listens on 127.0.0.1, or in network namespaces that the script makes and rem
 cut networks want root and `ip`. The processes end with the script, also by Ctrl-C.
 """
 import argparse
-import csv
 import os
-import random
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import traceback
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from cluster_site import Client, Hang, Lost, Networks, Site, clean, disguised, go_on, kill, pause, wait_until
-
-# The longest time of a run with a fault, s: a cut of 30 s, twice the 15 s until a job of somebody silent is handed on, and the work.
-LIMIT = 180
-CUT = 30
-INNER = ["--env-steps", "3e6", "--set", "search.inner_env_steps=300000"]
-WORKS = {
-    "trpo": ["train", "z-grasp", "--env-steps", "40000", "--set", "train.evaluation_episodes=40"],
-    "ppo": ["train", "z-grasp", "--method", "hwasp", "--env-steps", "40000", "--set", "train.evaluation_episodes=40"],
-    "cmaes-rl": ["train", "mass-spring", "--method", "cmaes-rl", *INNER],
-    "ars-rl": ["train", "mass-spring", "--method", "ars-rl", *INNER],
-    "compare": ["compare", "mass-spring", "--methods", "hwasp,cmaes,ars", "--seeds", "2", "--env-steps", "800000"],
-}
-TRAININGS = [name for name in WORKS if name != "compare"]
-
-
-def bits(run):
-    """What has to be the same: policies, designs and learning curves, those of each cell of a comparison."""
-    found = {}
-    for policy in sorted(run.glob("**/policy.safetensors")):
-        with open(policy.parent / "metrics.csv", newline="") as file:
-            rows = [{name: value for name, value in row.items() if name != "wall_s"} for row in csv.DictReader(file)]
-        found[str(policy.parent.relative_to(run))] = (policy.read_bytes(), (policy.parent / "design.toml").read_bytes(), rows)
-    return found
-
-
-@dataclass
-class Asked:
-    program: Path
-    nats: str
-    root: Path
-    other: Path
-    seed: int
-    times: dict = field(default_factory=dict)
-    reference: dict = field(default_factory=dict)
-
-
-class Try:
-    """One run of a work with workers, and what is done to it."""
-
-    def __init__(self, asked, fault, number):
-        self.asked, self.fault, self.name = asked, fault, f"{fault.name}-{number}"
-        self.draw = random.Random(f"{asked.seed} {self.name}")
-        self.work = fault.works[number % len(fault.works)]
-        self.note, self.missed, self.site, self.process = f" {self.work}", False, None, None
-        self.out = asked.root / self.name / "run"
-
-    def begin(self):
-        networks = Networks(self.name) if self.fault.networks else None
-        self.site = Site(self.out.parent, self.asked.program, self.asked.nats, networks, self.fault.most)
-        for _ in range(self.fault.workers):
-            self.site.worker()
-        self.began = time.monotonic()
-        self.coordinate()
-
-    def coordinate(self):
-        """Begins the work, or goes on with it."""
-        work = WORKS[self.work]
-        if (self.out / "summary.json").exists():
-            # It was done when it was killed.
-            self.missed, self.process = True, None
-            return
-        resumed = work[0] == "train" and (self.out / "experiment.toml").exists()
-        if work[0] == "train" and not resumed:
-            shutil.rmtree(self.out, ignore_errors=True)
-        self.process = self.site.coordinator(["train", "--resume", self.out] if resumed else [*work, "--out", self.out])
-
-    def moment(self, first=0.1, last=0.8):
-        """Waits for a moment within the work."""
-        wait = self.draw.uniform(first, last) * self.asked.times.get(self.work, 0.0)
-        self.note += f" +{wait:.2f} s"
-        wait_until(lambda: time.monotonic() - self.began > wait or self.done(), LIMIT, "the moment did not come")
-        self.missed = self.missed or self.done()
-
-    def done(self):
-        return self.process is None or self.process.poll() is not None
-
-    def sleep(self, seconds):
-        end = time.monotonic() + seconds
-        wait_until(lambda: time.monotonic() > end, seconds + 5, "the time did not pass")
-
-    def finish(self):
-        wait_until(self.done, LIMIT - (time.monotonic() - self.began), "the run did not end")
-        took = time.monotonic() - self.began
-        if self.process and self.process.returncode != 0:
-            raise Lost(f"the coordinator ended with status {self.process.returncode}")
-        return took
-
-    def told(self, names, words):
-        return words in self.site.logs(names)
-
-
-def worker(t):
-    t.moment()
-    kill(t.draw.choice(t.site.crew))
-    if t.draw.random() < 0.5:
-        t.site.worker(wait=False)
-
-
-def server(t):
-    t.moment()
-    t.site.kill_server()
-    t.sleep(t.draw.uniform(0.0, 4.0))
-    t.site.start_server()
-
-
-def coordinator(t):
-    t.moment(0.05, 0.9)
-    kill(t.process)
-    t.sleep(t.draw.uniform(0.0, 2.0))
-    t.coordinate()
-
-
-def cut(side):
-    def fault(t):
-        t.moment(0.1, 0.6)
-        t.site.networks.plug(side, "down")
-        t.sleep(CUT)
-        t.site.networks.plug(side, "up")
-    return fault
-
-
-def slow(t):
-    """A worker that has a tenth of its time."""
-    victim = t.site.crew[0]
-    t.moment(0.0, 0.3)
-    while not t.done():
-        pause(victim)
-        t.sleep(0.45)
-        go_on(victim)
-        t.sleep(0.05)
-        if time.monotonic() - t.began > LIMIT:
-            raise Hang(f"the run did not end after {LIMIT} s")
-
-
-def stopped(t):
-    """Acknowledgements that come after the job was handed to another one."""
-    t.moment()
-    victim = t.draw.choice(t.site.crew)
-    pause(victim)
-    t.sleep(t.draw.uniform(16.0, 19.0))
-    go_on(victim)
-
-
-def twice(t):
-    """Every job is there twice, or three times."""
-    client, seen = Client(t.site.port), set()
-    client.subscribe("hwasp.jobs.>")
-    while not t.done() and time.monotonic() - t.began < LIMIT:
-        message = client.read(0.1)
-        if message and message not in seen:
-            seen.add(message)
-            for _ in range(t.draw.choice([1, 2])):
-                client.publish(*message)
-    t.missed = t.missed or not seen
-
-
-def full(t):
-    """The store takes nothing for some seconds."""
-    client, refused = Client(t.site.port), 0
-    t.moment(0.05, 0.6)
-    for size in (512 << 10, 32 << 10, 2 << 10, 64):
-        while not client.ask("hwasp.data.filler.kept.x", os.urandom(size)).get("error"):
-            pass
-        refused += 1
-    t.sleep(t.draw.uniform(2.0, 8.0))
-    t.missed = t.missed or t.done()
-    answer = client.ask("$JS.API.STREAM.PURGE.HWASP_DATA", b'{"filter":"hwasp.data.filler.>"}')
-    if refused != 4 or answer.get("error"):
-        raise Lost(f"the store could not be filled and emptied: {answer}")
-
-
-def other(t):
-    """A worker of another version is there first, and gets nothing."""
-    program = t.asked.other
-    stranger = t.site.worker(program)
-    t.moment()
-    t.site.worker()
-    t.finish()
-    wait_until(lambda: t.told("worker-1.log", "somebody asks whose jobs this worker refuses"), 10, "the other worker was not told")
-    if not t.told("coordinator.log", "gets no jobs, for it would not give the same bits"):
-        raise Lost("the coordinator did not tell of the other worker")
-    stranger.send_signal(signal.SIGINT)
-    wait_until(lambda: t.told("worker-1.log", "w1 did 0 jobs"), 20, "the other worker did jobs, or does not end")
-
-
-def stranger(t):
-    """Messages of somebody else, on all subjects."""
-    client = Client(t.site.port)
-    for subject in ("hwasp.jobs.>", "hwasp.data.*.answer.*"):
-        client.subscribe(subject)
-    jobs, answers, sent = set(), set(), 0
-    while not t.done() and time.monotonic() - t.began < LIMIT:
-        message = client.read(0.05)
-        if message and message not in jobs | answers and sent < 300:
-            subject, payload = message
-            words = subject.split(".")
-            own = [os.urandom(t.draw.randrange(200)), payload[:t.draw.randrange(len(payload))], b"\xff\xff\xff\x3f" + payload[4:]]
-            for garbage in own:
-                where = [subject, "hwasp.call", "hwasp.stop.x"]
-                if words[1] == "jobs":
-                    where.append(f"hwasp.jobs.{words[2]}.x")
-                else:
-                    where.append(f"hwasp.data.{words[2]}.news.{words[4]}")
-                for place in where:
-                    (jobs if ".jobs." in place else answers).add((place, garbage))
-                    client.publish(place, garbage)
-                    sent += 1
-    if not any(".jobs." in place for place, _ in jobs):
-        t.missed = True
-    elif not t.told("worker-*.log", "is dropped"):
-        raise Lost("the workers did not tell of messages of a stranger")
-    elif any(".answer." in place for place, _ in answers) and not t.told("coordinator.log", "it is dropped"):
-        raise Lost("the coordinator did not tell of answers of a stranger")
-
-
-def changing(t):
-    """Workers come and go all the time, some of them without a word."""
-    crew = list(t.site.crew)
-    while not t.done() and time.monotonic() - t.began < LIMIT:
-        t.sleep(t.draw.uniform(0.5, 2.5))
-        if len(crew) > 1 and t.draw.random() < 0.5:
-            gone = crew.pop(t.draw.randrange(len(crew)))
-            gone.send_signal(t.draw.choice([signal.SIGINT, signal.SIGTERM, signal.SIGKILL]))
-        elif len(crew) < 4:
-            crew.append(t.site.worker(wait=False))
-
-
-@dataclass
-class Fault:
-    name: str
-    does: object
-    works: list = field(default_factory=lambda: list(WORKS))
-    networks: bool = False
-    workers: int = 2
-    most: int = 1 << 30
-
-
-FAULTS = [
-    Fault("worker", worker),
-    Fault("server", server),
-    Fault("coordinator", coordinator),
-    Fault("cut-worker", cut("w"), networks=True),
-    Fault("cut-coordinator", cut("c"), networks=True),
-    Fault("slow", slow),
-    Fault("late", stopped),
-    Fault("twice", twice),
-    Fault("full", full, most=24 << 20),
-    Fault("other", other, works=TRAININGS, workers=0),
-    Fault("stranger", stranger),
-    Fault("changing", changing),
-]
+from cluster_acts import FAULTS, Fault
+from cluster_site import Hang, Lost, Site, clean, disguised
+from cluster_try import WORKS, Asked, Try, bits
 
 
 def attempt(asked, fault, number):
@@ -330,6 +77,8 @@ def prepare(asked, works):
         out, began = asked.root / "reference" / work, time.monotonic()
         subprocess.run([str(word) for word in [asked.program, *WORKS[work], "--quiet", "--out", out]], check=True)
         asked.reference[work] = bits(out)
+        if not asked.reference[work]:
+            sys.exit(f"{work} has no policy at {out}")
         alone = time.monotonic() - began
         _, verdict, took, _ = attempt(asked, Fault("undisturbed", lambda t: None, works=[work]), len(asked.times))
         if verdict:

@@ -158,7 +158,13 @@ class Fault:
     most: int = 1 << 30
 
 
+def nothing(_):
+    """No fault: the number of workers changes no bit."""
+
+
 FAULTS = [
+    Fault("one-worker", nothing, workers=1),
+    Fault("seven-workers", nothing, workers=7),
     Fault("worker", worker),
     Fault("server", server),
     Fault("coordinator", coordinator),

@@ -26,7 +26,7 @@ import traceback
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from cluster_acts import FAULTS, Fault
+from cluster_acts import FAULTS, Fault, nothing
 from cluster_site import Hang, Lost, Site, clean, disguised
 from cluster_try import WORKS, Asked, Try, bits
 
@@ -80,7 +80,7 @@ def prepare(asked, works):
         if not asked.reference[work]:
             sys.exit(f"{work} has no policy at {out}")
         alone = time.monotonic() - began
-        _, verdict, took, _ = attempt(asked, Fault("undisturbed", lambda t: None, works=[work]), len(asked.times))
+        _, verdict, took, _ = attempt(asked, Fault("undisturbed", nothing, works=[work]), len(asked.times))
         if verdict:
             sys.exit(f"{work} does not run undisturbed")
         asked.times[work] = took

@@ -25,13 +25,18 @@ const BLOCKS: [usize; 2] = [1, 6];
 const MOST_AT_ONCE: usize = 512;
 /// How often it is looked whether somebody wants a candidate to end.
 const LOOK: Duration = Duration::from_millis(100);
+/// Sets of parameters that are known to be kept.
+const REMEMBERED: usize = 4;
+
+/// Parameters, what stands for them in a job, and what is to be kept for that.
+type KeptParams = (Arc<[f32]>, Payload, Option<Need>);
 
 /// Answers requests with workers. Its answers have the bits of a [`LocalCollector`].
 pub struct RemoteCollector<'a> {
     cluster: &'a Cluster,
     near: LocalCollector<'a>,
     /// Parameters that are kept, those of the last requests.
-    kept: Mutex<Vec<(Arc<[f32]>, Payload, Option<Need>)>>,
+    kept: Mutex<Vec<KeptParams>>,
     /// Seconds of an episode or a step of lanes, as measured; 0 as long as nothing is known.
     pace: Mutex<f64>,
 }
@@ -115,8 +120,7 @@ impl<'a> RemoteCollector<'a> {
             let put = async move { asker.put(Class::Iteration, bytes).await };
             return self.cluster.wait(put).unwrap_or(Err(CollectError::Interrupted));
         }
-        const REMEMBERED: usize = 4;
-        let known = |kept: &Vec<(Arc<[f32]>, Payload, Option<Need>)>| {
+        let known = |kept: &Vec<KeptParams>| {
             // By their bits: what is no number is no other one.
             let same = |one: &[f32]| {
                 one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits())

@@ -39,7 +39,7 @@ impl Trainer for Cluster {
         stop: &AtomicBool,
     ) -> Result<Trained, TrainError> {
         let text = ExperimentText::of(assembly.experiment())?;
-        let bytes = from.map(pack).transpose().map_err(|why| CollectError::Unanswered(why))?;
+        let bytes = from.map(pack).transpose().map_err(CollectError::Unanswered)?;
         let (iteration, env_steps) = from.map_or((0, 0), |checkpoint| (checkpoint.iteration, checkpoint.env_steps));
         let (sender, receiver) = std::sync::mpsc::channel();
         let asker = Arc::clone(&self.asker);
@@ -73,7 +73,7 @@ impl Heard<'_> {
     ) -> Result<Trained, TrainError> {
         loop {
             match receiver.recv_timeout(STOP) {
-                Ok(Item::Told(told)) => self.hear(*told)?,
+                Ok(Item::Told(told)) => self.hear(&told)?,
                 Ok(Item::Checkpoint(bytes)) => {
                     let checkpoint: Checkpoint = unpack(&bytes).map_err(CollectError::Unanswered)?;
                     self.observer.on(Event::Checkpoint(&checkpoint))?;
@@ -94,8 +94,8 @@ impl Heard<'_> {
         }
     }
 
-    fn hear(&mut self, told: Told) -> Result<(), TrainError> {
-        match &told {
+    fn hear(&mut self, told: &Told) -> Result<(), TrainError> {
+        match told {
             Told::Iteration(row) => {
                 self.env_steps = row.env_steps;
                 self.observer.on(Event::Iteration(row))?;

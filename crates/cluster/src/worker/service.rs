@@ -29,6 +29,9 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Programs of other identities that were told of, and are not told of again.
 const STRANGERS: usize = 8;
 
+/// Jobs at work by their numbers, when they began, and what ends them.
+type Jobs = BTreeMap<u64, (AtWork, Instant, Arc<Ends>)>;
+
 /// A worker at work.
 pub(super) struct Service {
     name: String,
@@ -37,7 +40,7 @@ pub(super) struct Service {
     work: Work,
     identity: Identity,
     digest: String,
-    at_work: Mutex<BTreeMap<u64, (AtWork, Instant, Arc<Ends>)>>,
+    at_work: Mutex<Jobs>,
     draining: Arc<AtomicBool>,
     began: Instant,
     numbers: AtomicU64,

@@ -96,10 +96,11 @@ def other(t):
     """A worker of another version is there first, and gets nothing."""
     program = t.asked.other
     stranger = t.site.worker(program)
+    # Whoever waits calls every 3 s.
+    wait_until(lambda: t.told("worker-1.log", "somebody asks whose jobs this worker refuses"), 20, "the other worker was not told")
     t.moment()
     t.site.worker()
     t.finish()
-    wait_until(lambda: t.told("worker-1.log", "somebody asks whose jobs this worker refuses"), 10, "the other worker was not told")
     if not t.told("coordinator.log", "gets no jobs, for it would not give the same bits"):
         raise Lost("the coordinator did not tell of the other worker")
     stranger.send_signal(signal.SIGINT)

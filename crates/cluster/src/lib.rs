@@ -1,6 +1,6 @@
 //! Past one machine: episodes, candidates and trainings on workers that take jobs from a queue.
 //!
-//! The queue is NATS with JetStream. Jobs are functions of what they hold (experiment, parameters, episodes, names of streams), so that
+//! The queue is NATS with `JetStream`. Jobs are functions of what they hold (experiment, parameters, episodes, names of streams), so that
 //! it does not matter who does one, or how often: delivery at least once gives the bits of one machine.
 //!
 //! ```text

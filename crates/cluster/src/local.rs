@@ -1,4 +1,4 @@
-//! A server of one's own: NATS with JetStream, which another project makes, started with a configuration for this queue.
+//! A server of one's own: NATS with `JetStream`, which another project makes, started with a configuration for this queue.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};

@@ -3,6 +3,7 @@
 use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 #[cfg(feature = "cluster")]
 use std::time::Duration;
 
@@ -80,12 +81,17 @@ impl Crew {
         &*self.executor
     }
 
-    /// What answers requests.
-    pub fn collector<'a>(&'a self, assembly: &Assembly) -> Result<Box<dyn Collector + 'a>, CollectError> {
+    /// What answers requests. Where `stop` is set and no worker answers, it gives up after a while.
+    pub fn collector<'a>(
+        &'a self,
+        assembly: &Assembly,
+        stop: Option<&'a AtomicBool>,
+    ) -> Result<Box<dyn Collector + 'a>, CollectError> {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = &self.cluster {
-            return Ok(Box::new(cluster.collector(assembly, self.executor())?));
+            return Ok(Box::new(cluster.collector(assembly, self.executor(), stop)?));
         }
+        let _ = stop;
         Ok(Box::new(LocalCollector::new(assembly, self.executor())?))
     }
 

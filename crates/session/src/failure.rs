@@ -40,6 +40,11 @@ impl Failure {
         Self { error: error.into(), code: 130, hint: None }
     }
 
+    /// Something went wrong on the way. Exit status 1.
+    pub fn failed(error: impl Into<Box<dyn Error>>) -> Self {
+        Self { error: error.into(), code: 1, hint: None }
+    }
+
     /// Says the way on.
     pub fn hint(self, hint: &str) -> Self {
         Self { hint: Some(hint.to_owned()), ..self }

@@ -9,9 +9,10 @@ use std::time::Duration;
 use hwasp_experiment::{Catalogue, Experiment, InitialDesign, Layers, resolve};
 use hwasp_plot::curves_svg;
 use hwasp_runs::{Found, Keeping, Provenance, Resumed, RunError, RunFolder, Summary, TensorBoard, saved_provenance};
+use hwasp_training::collect::CollectError;
 use hwasp_training::{
-    Assembly, Checkpoint, Learned, Observer, ObserverError, STILL, TrainError, Trained, beginning, moved, train_by,
-    warm_start,
+    Assembly, Checkpoint, EvaluateError, Learned, Observer, ObserverError, STILL, TrainError, Trained, beginning,
+    moved, train_by, warm_start,
 };
 
 use crate::crew::{Crew, Elsewhere, place};
@@ -154,7 +155,7 @@ pub fn into_folder(
     watching: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<(Trained, Summary), Failure> {
-    let (collector, mut settling) = (crew.collector(assembly)?, crew);
+    let (collector, mut settling) = (crew.collector(assembly, Some(stop))?, crew);
     // What workers keep is not needed any more once the folder has it.
     let mut observers: Vec<&mut dyn Observer> = vec![folder, watching, &mut settling];
     let trained = train_by(&*collector, from, assembly, crew.executor(), &mut observers, stop);
@@ -162,7 +163,7 @@ pub fn into_folder(
     if trained.is_err() {
         crew.stop();
     }
-    let trained = trained.map_err(|error| ended(error, folder))?;
+    let trained = trained.map_err(|error| ended(error, folder, crew))?;
     if !moved(assembly, from, &trained.params) {
         tracing::warn!("the training changed nothing: {STILL}");
     }
@@ -211,15 +212,20 @@ fn unwritten(error: &TrainError) -> Option<&RunError> {
 }
 
 /// What a training that did not come to its end leaves, and the way on.
-fn ended(error: TrainError, folder: &mut RunFolder) -> Failure {
+fn ended(error: TrainError, folder: &mut RunFolder, crew: &Crew) -> Failure {
     let run = shell(folder.path());
-    let resume = format!("`hwasp train --resume {run}` goes on");
+    let with = if crew.is_elsewhere() { ", with the same --server," } else { "" };
+    let resume = format!("`hwasp train --resume {run}`{with} goes on");
     if let Err(unsaved) = folder.settle() {
         let hint = format!("the last checkpoint is as it was; with the way free, {resume} from there");
         return Failure::from(unsaved).hint(&hint);
     }
     match &error {
         TrainError::Interrupted { .. } => Failure::interrupted(error).hint(&format!("{resume} from there")),
+        TrainError::Collect(gone) | TrainError::Evaluate(EvaluateError::Collect(gone)) => {
+            let how = if *gone == CollectError::Interrupted { Failure::interrupted } else { Failure::failed };
+            how(error).hint(&format!("{resume} from the last checkpoint"))
+        }
         _ => match (folder.fault(), unwritten(&error)) {
             (Some(fault), _) => Failure::from(error).hint(&format!("`hwasp replay {}` repeats it", shell(fault))),
             (None, Some(_)) => Failure::from(error).hint(&format!("with the way free, {resume}")),

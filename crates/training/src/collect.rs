@@ -277,7 +277,7 @@ pub enum CollectError {
     #[error("whoever was asked for episodes has not answered: {0}")]
     Unanswered(String),
     /// Someone asked it to stop.
-    #[error("the training of a candidate was stopped")]
+    #[error("stopped while an answer was waited for")]
     Interrupted,
 }
 

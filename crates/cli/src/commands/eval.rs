@@ -24,7 +24,7 @@ pub(crate) fn run(args: &EvalArgs, catalogue: &Catalogue) -> Result<(), Failure>
     let params = saved.params().map_err(Failure::input)?;
     let asked = args.held_out.asked(&saved.assembly().experiment().train);
     let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
-    let collector = crew.collector(saved.assembly())?;
+    let collector = crew.collector(saved.assembly(), None)?;
     let nearer = stand_in(&args.nearer, saved.assembly())?;
     let evaluation = if nearer.is_some() {
         evaluate_native_by(&*collector, saved.assembly(), &params, asked)

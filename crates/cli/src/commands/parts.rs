@@ -40,7 +40,7 @@ pub(crate) fn run(args: &PartsArgs, catalogue: &Catalogue) -> Result<(), Failure
     let tuning = tuning.map_err(|error: RunError| Failure::input(error))?;
 
     let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
-    let collector = crew.collector(assembly)?;
+    let collector = crew.collector(assembly, None)?;
     output::remark(&format!("simulating the hand as trained and on its parts, {} episodes each", asked.0));
     let judge = snapped.judge(assembly, &params, asked, &*collector).map_err(failure)?;
     let worth = match tuning {

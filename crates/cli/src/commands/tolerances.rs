@@ -26,7 +26,7 @@ pub(crate) fn run(args: &TolerancesArgs, catalogue: &Catalogue) -> Result<(), Fa
     // What cannot be written is known before the work begins.
     writable(&folder)?;
     let crew = Crew::new(args.held_out.threads, args.server.elsewhere().as_ref(), &[], catalogue)?;
-    let collector = crew.collector(assembly)?;
+    let collector = crew.collector(assembly, None)?;
     let mut counter = Counter::new("designs simulated");
     let found = tolerances(assembly, &params, &errors, asked, &*collector, &mut |done, all| counter.tell(done, all));
     counter.finish();

@@ -1,6 +1,6 @@
 //! Episodes and candidates from workers.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -29,6 +29,8 @@ const LOOK: Duration = Duration::from_millis(100);
 /// Answers requests with workers. Its answers have the bits of a [`LocalCollector`].
 pub struct RemoteCollector<'a> {
     cluster: &'a Cluster,
+    /// Somebody wants it to end.
+    stop: Option<&'a AtomicBool>,
     near: LocalCollector<'a>,
     /// Parameters that are kept, those of the last requests.
     kept: Mutex<Vec<KeptParams>>,
@@ -58,9 +60,10 @@ impl<'a> RemoteCollector<'a> {
         cluster: &'a Cluster,
         assembly: &Assembly,
         executor: &'a dyn Executor,
+        stop: Option<&'a AtomicBool>,
     ) -> Result<Self, CollectError> {
         let near = LocalCollector::new(assembly, executor)?;
-        Ok(Self { cluster, near, kept: Mutex::default(), pace: Mutex::new(0.0) })
+        Ok(Self { cluster, stop, near, kept: Mutex::default(), pace: Mutex::new(0.0) })
     }
 
     fn pace(&self) -> f64 {
@@ -107,7 +110,7 @@ impl<'a> RemoteCollector<'a> {
                 .into_iter()
                 .collect::<Result<Vec<_>, CollectError>>()
         };
-        let answers = self.cluster.wait(work).unwrap_or(Err(CollectError::Interrupted))?;
+        let answers = self.cluster.wait_unless(self.stop, work).unwrap_or(Err(CollectError::Interrupted))?;
         self.measured(answers.iter().map(|reply| reply.seconds).sum(), amount(request));
         answers.into_iter().map(|reply| unpack::<Content>(&reply.content).map_err(unanswered)?).collect()
     }
@@ -119,7 +122,7 @@ impl<'a> RemoteCollector<'a> {
             let asker = Arc::clone(&self.cluster.asker);
             let bytes = pack()?;
             let put = async move { asker.put(Class::Iteration, bytes).await };
-            return self.cluster.wait(put).unwrap_or(Err(CollectError::Interrupted));
+            return self.cluster.wait_unless(self.stop, put).unwrap_or(Err(CollectError::Interrupted));
         }
         // By their bits: what is no number is no other one.
         let same =
@@ -132,7 +135,7 @@ impl<'a> RemoteCollector<'a> {
         }
         let (asker, bytes) = (Arc::clone(&self.cluster.asker), pack()?);
         let put = async move { asker.put(Class::Iteration, bytes).await };
-        let (payload, need) = self.cluster.wait(put).unwrap_or(Err(CollectError::Interrupted))?;
+        let (payload, need) = self.cluster.wait_unless(self.stop, put).unwrap_or(Err(CollectError::Interrupted))?;
         if let Ok(mut kept) = self.kept.lock() {
             kept.truncate(REMEMBERED - 1);
             kept.insert(0, KeptParams { params: params.into(), payload: payload.clone(), need: need.clone() });

@@ -9,8 +9,10 @@ mod trainer;
 mod waiting;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use hwasp_core::Executor;
 use hwasp_training::Assembly;
@@ -30,6 +32,11 @@ use crate::store::Store;
 
 /// How long a server that is away, or full, is waited for before an error.
 const STORE_PATIENCE: Duration = Duration::from_mins(10);
+
+/// How often it is looked whether somebody wants a wait to end.
+const LOOK: Duration = Duration::from_millis(100);
+/// How long an answer is waited for after that: most come, and then an iteration is done.
+const GRACE: Duration = Duration::from_secs(10);
 
 /// A connection to workers, for one run. It may be shared by threads.
 pub struct Cluster {
@@ -71,7 +78,8 @@ impl Cluster {
     }
 
     /// What answers requests about experiments; `assembly` is the one that most of them are about, and `executor` answers what takes
-    /// less time than the way to a worker.
+    /// less time than the way to a worker. Where `stop` is set and no answer comes, it gives up after a while
+    /// ([`CollectError::Interrupted`]).
     ///
     /// # Errors
     /// [`CollectError::Setup`] where the experiment cannot be written as a text.
@@ -79,8 +87,9 @@ impl Cluster {
         &'a self,
         assembly: &Assembly,
         executor: &'a dyn Executor,
+        stop: Option<&'a AtomicBool>,
     ) -> Result<RemoteCollector<'a>, CollectError> {
-        RemoteCollector::new(self, assembly, executor)
+        RemoteCollector::new(self, assembly, executor, stop)
     }
 
     /// Workers that answered the last call: how many, and how many jobs they do at once.
@@ -107,12 +116,34 @@ impl Cluster {
 
     /// Runs a future on the thread of the connection, and waits for it.
     fn wait<T: Send + 'static>(&self, work: impl Future<Output = T> + Send + 'static) -> Option<T> {
+        self.wait_unless(None, work)
+    }
+
+    /// The same, and none where `stop` is set and nothing comes for a while.
+    fn wait_unless<T: Send + 'static>(
+        &self,
+        stop: Option<&AtomicBool>,
+        work: impl Future<Output = T> + Send + 'static,
+    ) -> Option<T> {
         let (sender, receiver) = std::sync::mpsc::channel();
-        self.handle.spawn(async move {
+        let task = self.handle.spawn(async move {
             // Whoever waited may be gone.
             let _ = sender.send(work.await);
         });
-        receiver.recv().ok()
+        let mut stopped: Option<Instant> = None;
+        loop {
+            match receiver.recv_timeout(LOOK) {
+                Ok(output) => return Some(output),
+                Err(RecvTimeoutError::Disconnected) => return None,
+                Err(RecvTimeoutError::Timeout) if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) => {
+                    if stopped.get_or_insert_with(Instant::now).elapsed() > GRACE {
+                        task.abort();
+                        return None;
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
     }
 }
 

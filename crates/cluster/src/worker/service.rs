@@ -29,6 +29,9 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Programs of other identities that were told of, and are not told of again.
 const STRANGERS: usize = 8;
 
+/// Jobs at work by their numbers, when they began, and what ends them.
+type Jobs = BTreeMap<u64, (AtWork, Instant, Arc<Ends>)>;
+
 /// A worker at work.
 pub(super) struct Service {
     name: String,
@@ -37,16 +40,13 @@ pub(super) struct Service {
     work: Work,
     identity: Identity,
     digest: String,
-    at_work: Mutex<BTreeMap<u64, Running>>,
+    at_work: Mutex<Jobs>,
     draining: Arc<AtomicBool>,
     began: Instant,
     numbers: AtomicU64,
     jobs: AtomicU64,
     busy_ms: AtomicU64,
 }
-
-/// A job at work: what is said of it, since when, and what ends it.
-type Running = (AtWork, Instant, Arc<Ends>);
 
 impl Service {
     pub(super) fn new(

@@ -28,7 +28,7 @@ import urllib.request
 
 JOBS = {
     "z-grasp, TRPO": ["z-grasp", "--env-steps", "200000"],
-    "mass-spring, cmaes-rl": ["mass-spring", "--method", "cmaes-rl", "--env-steps", "48000000", "--set", "search.inner_env_steps=400000"],
+    "mass-spring, cmaes-rl": ["mass-spring", "--method", "cmaes-rl", "--env-steps", "48000000"],
     "mass-spring, PPO": ["mass-spring", "--env-steps", "400000"],
 }
 MONITOR, PORT = 18222, 14222

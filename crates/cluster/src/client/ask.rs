@@ -335,10 +335,14 @@ impl Asker {
 
     async fn publish(&self, job: &Job, asked: u32) -> Result<u64, CollectError> {
         let subject = subjects::jobs(&self.digest, &self.run);
-        let bytes = pack(job).map_err(unanswered)?;
+        let bytes = Bytes::from(pack(job).map_err(unanswered)?);
         let id = format!("{}-{}-{asked}", self.run, job.name);
-        let sent = self.store.publish(&subject, bytes.into(), Some(&id)).await;
-        Ok(sent.map_err(unanswered)?.sequence)
+        let mut sent = self.store.publish(&subject, bytes.clone(), Some(&id)).await.map_err(unanswered)?;
+        // Somebody asked for it a moment ago, and since then it was done and forgotten.
+        if sent.duplicate && !self.queued(Some(sent.sequence)).await {
+            sent = self.store.publish(&subject, bytes, None).await.map_err(unanswered)?;
+        }
+        Ok(sent.sequence)
     }
 
     /// Whether a job still waits in the queue, or is handed out.

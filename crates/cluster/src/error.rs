@@ -20,7 +20,7 @@ pub enum ClusterError {
         why: String,
     },
     /// A file that lets somebody in and cannot be used.
-    #[error("{} cannot be used: {why}", path.display())]
+    #[error("`{}` cannot be used: {why}", path.display())]
     File {
         /// The file.
         path: PathBuf,

@@ -119,7 +119,10 @@ impl Server {
         if !["nats", "tls"].contains(&scheme) {
             return Err(fault("it begins with nats:// or tls://"));
         }
-        if rest.contains('@') {
+        if let Some((_, host)) = rest.rsplit_once('@') {
+            // The token is told nobody.
+            let fault =
+                |why: &str| ClusterError::Address { address: format!("{scheme}://…@{host}"), why: why.to_owned() };
             return Err(fault(
                 "a token in it would be seen in lists of processes; put it into a file, for --token-file",
             ));
@@ -163,14 +166,22 @@ fn file(path: &Path, why: &dyn std::fmt::Display) -> ClusterError {
 
 /// The token in a file; spaces and line breaks around it are no part of it.
 pub(crate) fn token(path: &Path) -> Result<String, ClusterError> {
-    let length = fs::metadata(path).map_err(|error| file(path, &error))?.len();
+    let fault = |why: &dyn std::fmt::Display| {
+        file(
+            path,
+            &format!(
+                "{why}\n  = hint: `hwasp cluster up` writes a token into the folder of its queue, runs/queue/token by default"
+            ),
+        )
+    };
+    let length = fs::metadata(path).map_err(|error| fault(&error))?.len();
     if length > LONGEST_TOKEN {
-        return Err(file(path, &format!("a token has at most {LONGEST_TOKEN} bytes, and it has {length}")));
+        return Err(fault(&format!("a token has at most {LONGEST_TOKEN} bytes, and it has {length}")));
     }
-    let text = fs::read_to_string(path).map_err(|error| file(path, &error))?;
+    let text = fs::read_to_string(path).map_err(|error| fault(&error))?;
     let token = text.trim();
     if token.is_empty() || token.contains(char::is_whitespace) {
-        return Err(file(path, &"it has to hold a token, one word"));
+        return Err(fault(&"it has to hold a token, one word"));
     }
     Ok(token.to_owned())
 }

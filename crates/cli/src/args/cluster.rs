@@ -60,6 +60,12 @@ pub(crate) struct WorkerArgs {
     pub(crate) until_input_ends: bool,
 }
 
+/// An address of this machine.
+fn address(text: &str) -> Result<IpAddr, String> {
+    let why = "it has to be an address such as 127.0.0.1, 10.0.0.5 or ::1; a name goes to --host";
+    text.parse().map_err(|_| why.to_owned())
+}
+
 /// A name that can be told in a table.
 fn name(text: &str) -> Result<String, String> {
     let plain = |c: char| c.is_alphanumeric() || "-._".contains(c);
@@ -96,7 +102,7 @@ pub(crate) struct UpArgs {
     #[arg(long, allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// The address where the queue listens. Elsewhere than on loopback take --tls-cert and --tls-key, too
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", value_parser = address)]
     pub(crate) bind: IpAddr,
     /// What others call this machine, as the certificate does [default: the address where it listens]
     #[arg(long, value_name = "NAME", value_parser = name)]

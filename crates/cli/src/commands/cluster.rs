@@ -33,7 +33,6 @@ pub(crate) fn run(args: &ClusterArgs, catalogue: &Catalogue) -> Result<(), Failu
 }
 
 fn up(args: &UpArgs) -> Result<(), Failure> {
-    log::with_times();
     let stop = stop_on_signal()?;
     let options = ServerOptions {
         program: args.nats_server.clone(),
@@ -46,6 +45,7 @@ fn up(args: &UpArgs) -> Result<(), Failure> {
         host: args.host.clone(),
     };
     let mut local = LocalServer::start(&options).map_err(Failure::input)?;
+    log::with_times();
     let server = local.server.clone();
     if !args.bind.is_loopback() && options.certificate.is_none() {
         tracing::warn!(

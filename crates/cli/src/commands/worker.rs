@@ -16,7 +16,6 @@ use hwasp_session::Failure;
 use hwasp_session::identity;
 
 pub(crate) fn run(args: &WorkerArgs, catalogue: &Catalogue) -> Result<(), Failure> {
-    log::with_times();
     let stop = stop_on_signal()?;
     if args.until_input_ends {
         end_with_input(Arc::clone(&stop));
@@ -25,6 +24,7 @@ pub(crate) fn run(args: &WorkerArgs, catalogue: &Catalogue) -> Result<(), Failur
     let name = args.name.clone().unwrap_or_else(own_name);
     let options = WorkerOptions { server: args.connect.server(&args.server), name, threads };
     let ready = || {
+        log::with_times();
         output::remark(&format!("{} takes jobs from {}, {threads} at once; Ctrl-C ends it", options.name, args.server));
     };
     let served = serve(&options, catalogue, identity(catalogue)?, &stop, &ready).map_err(Failure::input)?;

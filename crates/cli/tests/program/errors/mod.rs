@@ -3,6 +3,8 @@
 //! `HWASP_WRITE_DOCS=1 cargo test -p hwasp-cli --test program errors` writes the document anew.
 
 mod checkpoints;
+#[cfg(feature = "cluster")]
+mod cluster;
 mod commands;
 mod experiments;
 mod folders;
@@ -99,6 +101,8 @@ const GROUPS: &[Group] = &[
     #[cfg(feature = "mujoco")]
     Group { title: "Robots of one's own", cases: robots::CASES },
     Group { title: "Command lines", cases: commands::CASES },
+    #[cfg(feature = "cluster")]
+    Group { title: "Many machines", cases: cluster::CASES },
     Group { title: "Run folders", cases: folders::CASES },
     Group { title: "Checkpoints", cases: checkpoints::CASES },
     Group { title: "Metrics, policies and summaries", cases: tables::CASES },

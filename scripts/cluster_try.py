@@ -11,9 +11,12 @@ from cluster_site import Lost, Networks, Site, wait_until
 # The longest time of a run with a fault, s: a cut of 30 s, twice the 15 s until a job of somebody silent is handed on, and the work.
 LIMIT = 180
 INNER = ["--env-steps", "3e6", "--set", "search.inner_env_steps=300000"]
+FEW = ["--env-steps", "36000", "--set", "search.episodes=1", "--set", "train.evaluation_episodes=20"]
 WORKS = {
     "trpo": ["train", "z-grasp", "--env-steps", "40000", "--set", "train.evaluation_episodes=40"],
     "ppo": ["train", "z-grasp", "--method", "hwasp", "--env-steps", "40000", "--set", "train.evaluation_episodes=40"],
+    "cmaes": ["train", "z-grasp", "--method", "cmaes", *FEW, "--set", "cmaes.popsize=8"],
+    "ars": ["train", "z-grasp", "--method", "ars", *FEW, "--set", "ars.directions=4"],
     "cmaes-rl": ["train", "mass-spring", "--method", "cmaes-rl", *INNER],
     "ars-rl": ["train", "mass-spring", "--method", "ars-rl", *INNER],
     "compare": ["compare", "mass-spring", "--methods", "hwasp,cmaes,ars", "--seeds", "2", "--env-steps", "800000"],

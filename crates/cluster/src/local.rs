@@ -51,6 +51,8 @@ impl Stored {
     pub const CONFIG: &'static str = "nats.conf";
     /// Who has it open has the folder.
     pub const LOCK: &'static str = "lock";
+    /// The number of its process.
+    pub const PID: &'static str = "pid";
     /// Its log.
     pub const LOG: &'static str = "server.log";
 }
@@ -69,7 +71,6 @@ impl LocalServer {
     /// Where the program is not there, or does not come up.
     pub fn start(options: &ServerOptions) -> Result<Self, ClusterError> {
         let program = find(options.program.as_deref())?;
-        let port = free_port(options)?;
         let folder = &options.store;
         let unmade = |error: io::Error| {
             start(&format!("{} cannot be used: {error}", folder.display()), "name another folder with --store")
@@ -78,12 +79,15 @@ impl LocalServer {
         let folder = &folder.canonicalize().map_err(unmade)?;
         // The server holds it as its input: as long as it lives, even if we do not, no other one takes the same folder.
         let lock = File::create(folder.join(Stored::LOCK)).map_err(unmade)?;
+        let pid = folder.join(Stored::PID);
         lock.try_lock().map_err(|_| {
+            let process = fs::read_to_string(&pid).unwrap_or_default();
             start(
-                &format!("another one runs with {} already", folder.display()),
-                "use that one, or end it, or name another folder with --store",
+                &format!("another one runs with {} already: {PROGRAM}, process {}", folder.display(), process.trim()),
+                "use that one, or end it (`kill` and its number, where its `hwasp cluster up` is gone), or name another folder with --store",
             )
         })?;
+        let port = free_port(options, &folder.join(Stored::CONFIG))?;
         let token = folder.join(Stored::TOKEN);
         if !token.exists() {
             write_private(&token, &format!("{}\n", random()?)).map_err(unmade)?;
@@ -99,6 +103,7 @@ impl LocalServer {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let spawned = command.spawn();
         let child = spawned.map_err(|error| start(&format!("{}: {error}", program.display()), INSTALL))?;
+        fs::write(&pid, child.id().to_string()).map_err(unmade)?;
         let address = SocketAddr::new(options.bind, port);
         let scheme = if options.certificate.is_some() { "tls" } else { "nats" };
         let reached = if options.bind.is_unspecified() { SocketAddr::from(([127, 0, 0, 1], port)) } else { address };
@@ -183,16 +188,41 @@ fn find(named: Option<&Path>) -> Result<PathBuf, ClusterError> {
     found.ok_or_else(|| start(&format!("`{PROGRAM}` is not on the path"), INSTALL))
 }
 
-/// The port that was named, or one that is free.
-fn free_port(options: &ServerOptions) -> Result<u16, ClusterError> {
-    let (first, others) = options.port.map_or(PORTS, |port| (port, 1));
-    let free = |port: &u16| TcpListener::bind((options.bind, *port)).is_ok();
-    (first..first.saturating_add(others)).find(free).ok_or_else(|| {
-        start(
-            &format!("{} is taken, or is no address of this machine", SocketAddr::new(options.bind, first)),
-            "name another one with --port, or an address of this machine with --bind",
-        )
-    })
+/// The port that was named, or that of the last time, or one that is free.
+fn free_port(options: &ServerOptions, before: &Path) -> Result<u16, ClusterError> {
+    let bind = |port: u16| TcpListener::bind((options.bind, port)).map(drop);
+    if let Some(port) = options.port {
+        return bind(port).map(|()| port).map_err(|error| {
+            start(
+                &format!("{} cannot be had: {error}", SocketAddr::new(options.bind, port)),
+                "name another one with --port, or an address of this machine with --bind",
+            )
+        });
+    }
+    let ports = || PORTS.0..PORTS.0 + PORTS.1;
+    let wanted = last_port(before).unwrap_or(PORTS.0);
+    let mut last = Ok(());
+    for port in std::iter::once(wanted).chain(ports()) {
+        last = bind(port);
+        if last.is_ok() {
+            if port != wanted {
+                tracing::warn!("port {wanted} is taken, by an older queue perhaps: this one listens at {port}");
+            }
+            return Ok(port);
+        }
+    }
+    let why = last.err().map_or_else(String::new, |error| error.to_string());
+    Err(start(
+        &format!("no port from {} to {} can be had at {}: {why}", PORTS.0, PORTS.0 + PORTS.1 - 1, options.bind),
+        "name another one with --port, or an address of this machine with --bind",
+    ))
+}
+
+/// The port of the last time: whoever was connected finds it there again.
+fn last_port(config: &Path) -> Option<u16> {
+    let text = fs::read_to_string(config).ok()?;
+    let listen = text.lines().find_map(|line| line.strip_prefix("listen: "))?;
+    listen.trim_matches('"').parse::<SocketAddr>().ok().map(|address| address.port())
 }
 
 /// A text that nobody guesses.

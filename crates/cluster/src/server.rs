@@ -2,11 +2,14 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use async_nats::{Client, ConnectError, ConnectErrorKind, ConnectOptions, Event};
 
 use crate::error::ClusterError;
+use crate::slurm::quoted;
 
 /// The longest file with a token, bytes.
 const LONGEST_TOKEN: u64 = 4096;
@@ -49,6 +52,20 @@ pub struct Server {
 }
 
 impl Server {
+    /// What is typed behind a command that is to use it.
+    pub fn options(&self) -> String {
+        let files = [("--token-file", &self.token), ("--tls-ca", &self.authority)]
+            .map(|(option, file)| Some((option, file.as_ref()?)));
+        let pair =
+            self.certificate.iter().flat_map(|(certificate, key)| [("--tls-cert", certificate), ("--tls-key", key)]);
+        let further = files
+            .into_iter()
+            .flatten()
+            .chain(pair)
+            .map(|(option, file)| format!(" {option} {}", quoted(&file.display().to_string())));
+        format!("--server {}{}", self.address, further.collect::<String>())
+    }
+
     /// Connects; `name` is what the server calls us. Later the connection comes back by itself.
     pub(crate) async fn connect(&self, name: &str) -> Result<Client, ClusterError> {
         let host = self.check()?;
@@ -59,7 +76,13 @@ impl Server {
             // A cut network is noticed in seconds.
             .ping_interval(Duration::from_secs(5))
             .reconnect_delay_callback(|attempt| LONGEST_PAUSE.min(Duration::from_millis(100 * attempt.max(1) as u64)))
-            .event_callback(|event| async move { tell(&event) });
+            .event_callback({
+                let (address, cut) = (self.address.clone(), Arc::new(AtomicBool::new(false)));
+                move |event| {
+                    let (address, cut) = (address.clone(), Arc::clone(&cut));
+                    async move { tell(&event, &address, &cut) }
+                }
+            });
         if let Some(path) = &self.token {
             options = options.token(token(path)?);
             tell_if_open(path);
@@ -186,10 +209,16 @@ pub(crate) fn token(path: &Path) -> Result<String, ClusterError> {
     Ok(token.to_owned())
 }
 
-/// The connection's own news.
-fn tell(event: &Event) {
+/// The connection's own news. `cut`: whether it was told that it is gone.
+fn tell(event: &Event, address: &str, cut: &AtomicBool) {
     match event {
-        Event::Disconnected => tracing::warn!("the connection to the server is gone; it is tried again"),
+        Event::Disconnected => {
+            cut.store(true, Ordering::Relaxed);
+            tracing::warn!("the connection to {address} is gone; it is tried again");
+        }
+        Event::Connected if cut.swap(false, Ordering::Relaxed) => {
+            tracing::info!("the connection to {address} is there again");
+        }
         Event::Connected => tracing::debug!("connected"),
         Event::SlowConsumer(_) => tracing::debug!("messages came faster than they were read; they are asked for again"),
         Event::ServerError(error) => tracing::warn!("the server says: {error}"),
@@ -201,6 +230,15 @@ fn tell(event: &Event) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_server_is_typed_as_it_was_given() {
+        let server = Server { address: "tls://box:1".into(), token: Some("a b".into()), ..Server::default() };
+        assert_eq!(server.options(), "--server tls://box:1 --token-file 'a b'");
+        let certificate = Some(("c".into(), "k".into()));
+        let server = Server { token: None, authority: Some("ca".into()), certificate, ..server };
+        assert_eq!(server.options(), "--server tls://box:1 --tls-ca ca --tls-cert c --tls-key k");
+    }
 
     #[test]
     fn addresses_are_checked_before_anything_is_sent() {

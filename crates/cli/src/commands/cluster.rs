@@ -107,21 +107,23 @@ impl Drop for AddressFile<'_> {
 
 /// What there is now, and what to do with it.
 fn told(server: &Server, workers: usize, threads: usize) -> String {
-    let token =
-        server.token.as_deref().map_or(String::new(), |token| format!(" --token-file {}", output::shell(token)));
-    let authority =
-        server.authority.as_deref().map_or(String::new(), |file| format!(" --tls-ca {}", output::shell(file)));
+    let options = server.options();
     let address = &server.address;
     let there = match workers {
         0 => "no workers".to_owned(),
-        1 => format!("a worker, {threads} jobs at once"),
-        _ => format!("{workers} workers, {threads} jobs at once each"),
+        1 => "a worker".to_owned(),
+        _ => format!("{workers} workers"),
+    };
+    let there = match threads {
+        _ if workers == 0 => there,
+        1 => format!("{there} with a thread each"),
+        _ => format!("{there} with {threads} threads each"),
     };
     format!(
         "{address}: a queue, and {there}. Ctrl-C ends all of it.\n\n  \
-         hwasp train EXPERIMENT --server {address}{token}{authority}\n  \
-         hwasp worker --server {address}{token}{authority}\n  \
-         hwasp cluster status --server {address}{token}{authority}\n"
+         hwasp train EXPERIMENT {options}\n  \
+         hwasp worker {options}\n  \
+         hwasp cluster status {options}\n"
     )
 }
 
@@ -158,6 +160,13 @@ impl Started {
     fn look_after(&mut self, threads: usize, server: &Server) -> Result<(), Failure> {
         // One that cannot even begin is not begun over and over.
         const REST: Duration = Duration::from_secs(5);
+        if let Ok(Some(status)) = self.child.try_wait()
+            && status.code() == Some(2)
+        {
+            let error = std::io::Error::other("its own worker cannot take jobs from it");
+            return Err(Failure::from(error)
+                .hint("what the worker says stands above; a certificate wants the name that it has, by --host"));
+        }
         if self.ended() && self.since.elapsed() > REST {
             tracing::warn!("local-{} has ended by itself; another one takes its place", self.index + 1);
             *self = Self::new(self.index, threads, server)?;
@@ -180,11 +189,12 @@ impl Started {
 }
 
 fn tell(args: &StatusArgs) -> Result<(), Failure> {
-    let status = status(&args.connect.server(&args.server)).map_err(Failure::input)?;
+    let server = args.connect.server(&args.server);
+    let status = status(&server).map_err(Failure::input)?;
     let text = if args.json {
         format!("{}\n", serde_json::to_string_pretty(&status)?)
     } else {
-        report::cluster::status(&status)
+        report::cluster::status(&status, &server.options())
     };
     Ok(output::print(&text)?)
 }

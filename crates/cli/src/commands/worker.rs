@@ -10,7 +10,6 @@ use hwasp_experiment::Catalogue;
 
 use super::stop_on_signal;
 use crate::args::WorkerArgs;
-use crate::progress::duration;
 use crate::{log, output};
 use hwasp_session::Failure;
 use hwasp_session::identity;
@@ -28,7 +27,7 @@ pub(crate) fn run(args: &WorkerArgs, catalogue: &Catalogue) -> Result<(), Failur
         output::remark(&format!("{} takes jobs from {}, {threads} at once; Ctrl-C ends it", options.name, args.server));
     };
     let served = serve(&options, catalogue, identity(catalogue)?, &stop, &ready).map_err(Failure::input)?;
-    output::remark(&format!("{} did {} jobs in {}", options.name, served.jobs, duration(served.seconds)));
+    output::remark(&format!("{} did {} jobs", options.name, served.jobs));
     Ok(())
 }
 

@@ -6,17 +6,20 @@ use hwasp_cluster::{Measured, Status};
 
 use crate::progress::duration;
 
-/// A table for a terminal.
-pub(crate) fn status(status: &Status) -> String {
+/// A table for a terminal; `options` are what is typed to use the queue.
+pub(crate) fn status(status: &Status, options: &str) -> String {
     let Status { address, server_version, waiting, at_work, kept_bytes, runs, round_trip_ms, workers } = status;
     let mut text = format!(
         "{address}  NATS {server_version}, {round_trip_ms:.1} ms there and back\n\
-         jobs: {waiting} waiting, {at_work} at work; {:.1} MB kept, of {} runs\n",
+         jobs: {waiting} waiting, {at_work} at work; {:.1} MB kept, of {}\n",
         *kept_bytes as f64 / 1e6,
-        runs.len()
+        match runs.len() {
+            1 => "one run".to_owned(),
+            count => format!("{count} runs"),
+        }
     );
     if workers.is_empty() {
-        let _ = writeln!(text, "\nno workers; `hwasp worker --server {address}` starts one");
+        let _ = writeln!(text, "\nno workers; `hwasp worker {options}` starts one");
         return text;
     }
     let width = workers.iter().map(|worker| worker.card.name.len()).max().unwrap_or(0).max(6);

@@ -53,7 +53,8 @@ pub(crate) struct Asker {
     pub(crate) identity: Identity,
     digest: String,
     pub(crate) run: String,
-    address: String,
+    /// How the server is named on a command line.
+    options: String,
     patience: Duration,
     /// Who waits for which job.
     waiting: Waiting,
@@ -90,7 +91,7 @@ impl Asker {
         identity: Identity,
         run: RunName,
         patience: Duration,
-        address: &str,
+        (address, options): (&str, &str),
     ) -> Result<Arc<Self>, ClusterError> {
         let queue = |why: String| ClusterError::Queue { address: address.to_owned(), why };
         let run = run.as_str().to_owned();
@@ -98,7 +99,7 @@ impl Asker {
         let asker = Arc::new(Self {
             digest: identity.digest(),
             identity,
-            address: address.to_owned(),
+            options: options.to_owned(),
             patience,
             waiting: Waiting::default(),
             news: Mutex::default(),
@@ -370,17 +371,17 @@ impl Asker {
         let silent = lock(&self.sign).elapsed();
         if silent >= self.patience {
             return Err(unanswered(format!(
-                "no worker was heard of for {:.0} s, and {} job waits; `hwasp cluster status --server {}` says who is there",
+                "no worker was heard of for {:.0} s, and a job waits ({}); `hwasp cluster status {}` says who is there",
                 silent.as_secs_f64(),
                 job.task.kind(),
-                self.address
+                self.options
             )));
         }
         if silent >= ALONE {
             self.tell_once("alone", || {
                 tracing::warn!(
-                    "no worker is there; `hwasp worker --server {}` starts one. It is waited for, for {:.0} s",
-                    self.address,
+                    "no worker is there; `hwasp worker {}` starts one. It is waited for, for {:.0} s",
+                    self.options,
                     self.patience.as_secs_f64()
                 );
             });

@@ -34,6 +34,8 @@ pub struct RemoteCollector<'a> {
     near: LocalCollector<'a>,
     /// Parameters that are kept, those of the last requests.
     kept: Mutex<Vec<KeptParams>>,
+    /// Whether it was told that episodes run here.
+    told: AtomicBool,
     /// Seconds of an episode or a step of lanes, as measured; 0 as long as nothing is known.
     pace: Mutex<f64>,
 }
@@ -63,7 +65,7 @@ impl<'a> RemoteCollector<'a> {
         stop: Option<&'a AtomicBool>,
     ) -> Result<Self, CollectError> {
         let near = LocalCollector::new(assembly, executor)?;
-        Ok(Self { cluster, stop, near, kept: Mutex::default(), pace: Mutex::new(0.0) })
+        Ok(Self { cluster, stop, near, kept: Mutex::default(), told: AtomicBool::new(false), pace: Mutex::new(0.0) })
     }
 
     fn pace(&self) -> f64 {
@@ -146,7 +148,11 @@ impl<'a> RemoteCollector<'a> {
     /// Whether a request takes less time here than its way to a worker.
     fn is_near(&self, request: &EpisodesRequest) -> bool {
         let pace = self.pace();
-        pace > 0.0 && pace * (amount(request) as f64) < NOT_WORTH_IT
+        let near = pace > 0.0 && pace * (amount(request) as f64) < NOT_WORTH_IT;
+        if near && !self.told.swap(true, Ordering::Relaxed) {
+            tracing::info!("its episodes take less time than the way to a worker: they run here");
+        }
+        near
     }
 
     fn rows(&self, request: &EpisodesRequest, alone: bool) -> Result<Batch, CollectError> {

@@ -63,7 +63,7 @@ impl Cluster {
         let asker = runtime.block_on(async {
             let client = server.connect(&format!("hwasp {}", run.as_str())).await?;
             let store = Store::open(client, &server.address, STORE_PATIENCE).await?;
-            Asker::new(store, identity, run, patience, &server.address).await
+            Asker::new(store, identity, run, patience, (&server.address, &server.options())).await
         })?;
         let (over, ends) = oneshot::channel();
         let serve = move || {
@@ -136,6 +136,11 @@ impl Cluster {
                 Ok(output) => return Some(output),
                 Err(RecvTimeoutError::Disconnected) => return None,
                 Err(RecvTimeoutError::Timeout) if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) => {
+                    if stopped.is_none() {
+                        tracing::info!(
+                            "answers that are on the way are waited for, 10 s at most; Ctrl-C again ends at once"
+                        );
+                    }
                     if stopped.get_or_insert_with(Instant::now).elapsed() > GRACE {
                         task.abort();
                         return None;

@@ -224,7 +224,13 @@ impl Service {
                 AckKind::Ack
             }
             Ok(false) if !self.drains() => {
-                tracing::info!(worker = self.name, job = name, run, seconds, "{kind} stopped: its run was");
+                tracing::info!(
+                    worker = self.name,
+                    job = name,
+                    run,
+                    seconds,
+                    "{kind} given up: whoever asked for it has stopped"
+                );
                 AckKind::Ack
             }
             Ok(false) => {

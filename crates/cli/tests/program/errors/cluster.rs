@@ -12,7 +12,10 @@ pub(super) const CASES: &[Case] = &[
     case("A token that is not there", Nothing, "hwasp cluster status --server nats://127.0.0.1:9 --token-file token"),
     case(
         "A token of two words",
-        Made(|s| s.write("token", "open sesame")),
+        Made(|s| {
+            s.write("token", "open sesame");
+            std::fs::set_permissions(s.path("token"), std::os::unix::fs::PermissionsExt::from_mode(0o600)).unwrap();
+        }),
         "hwasp cluster status --server nats://127.0.0.1:9 --token-file token",
     ),
     case("A certificate without its key", Nothing, "hwasp worker --server tls://127.0.0.1:9 --tls-cert mine.pem"),

@@ -110,7 +110,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="each fault once")
     parser.add_argument("--namespaces", action="store_true", help="cut networks, too: wants root")
     parser.add_argument("--nats-server", default=shutil.which("nats-server"), help="the program, where it is not on the path")
-    parser.add_argument("--other", type=Path, help="a program of another version [default: the same with another hash of sources]")
+    parser.add_argument("--other", type=Path, help="another program [default: a release build with another hash of sources]")
     parser.add_argument("--together", type=int, default=4, help="tries at once, each with a server of its own")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
     parser.add_argument("--folder", type=Path, help="where runs and logs of tries that went wrong stay [default: a temporary one]")

@@ -109,15 +109,11 @@ impl Drop for AddressFile<'_> {
 fn told(server: &Server, workers: usize, threads: usize) -> String {
     let options = server.options();
     let address = &server.address;
+    let of = if threads == 1 { "a thread".to_owned() } else { format!("{threads} threads") };
     let there = match workers {
         0 => "no workers".to_owned(),
-        1 => "a worker".to_owned(),
-        _ => format!("{workers} workers"),
-    };
-    let there = match threads {
-        _ if workers == 0 => there,
-        1 => format!("{there} with a thread each"),
-        _ => format!("{there} with {threads} threads each"),
+        1 => format!("a worker with {of}"),
+        _ => format!("{workers} workers with {of} each"),
     };
     format!(
         "{address}: a queue, and {there}. Ctrl-C ends all of it.\n\n  \

@@ -81,7 +81,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().expect(UNPOISONED)
 }
 
-fn unanswered(why: impl std::fmt::Display) -> CollectError {
+pub(super) fn unanswered(why: impl std::fmt::Display) -> CollectError {
     CollectError::Unanswered(why.to_string())
 }
 

@@ -10,9 +10,9 @@ use hwasp_training::collect::{
 };
 use hwasp_training::{Assembly, Collector, LocalCollector};
 
-use super::Cluster;
-use super::ask::{Asker, Need, Reply};
+use super::ask::{Asker, Need, Reply, unanswered};
 use super::run::forget_state;
+use super::{Cluster, long};
 use crate::message::{Block, Class, Content, Params, Payload, Task, pack, unpack};
 
 /// Work of less time than this is done here: the way to a worker and back takes as long. Seconds.
@@ -45,10 +45,6 @@ struct KeptParams {
     params: Arc<[f32]>,
     payload: Payload,
     need: Option<Need>,
-}
-
-fn unanswered(why: impl std::fmt::Display) -> CollectError {
-    CollectError::Unanswered(why.to_string())
 }
 
 /// What a request is about, and how long it takes.
@@ -119,26 +115,21 @@ impl<'a> RemoteCollector<'a> {
 
     /// Keeps the parameters of a request, where several jobs need them; those of one job travel with it.
     fn params(&self, params: &[f32], jobs: usize) -> Result<(Payload, Option<Need>), CollectError> {
-        let pack = || pack(&Params(params.to_vec())).map_err(unanswered);
-        if jobs < 2 {
-            let asker = Arc::clone(&self.cluster.asker);
-            let bytes = pack()?;
-            let put = async move { asker.put(Class::Iteration, bytes).await };
-            return self.cluster.wait_unless(self.stop, put).unwrap_or(Err(CollectError::Interrupted));
-        }
         // By their bits: what is no number is no other one.
         let same =
             |one: &[f32]| one.len() == params.len() && one.iter().zip(params).all(|(a, b)| a.to_bits() == b.to_bits());
         let known = |kept: &Vec<KeptParams>| {
             kept.iter().find(|kept| same(&kept.params)).map(|kept| (kept.payload.clone(), kept.need.clone()))
         };
-        if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
+        let shared = jobs > 1;
+        if let Some(found) = self.kept.lock().ok().filter(|_| shared).and_then(|kept| known(&kept)) {
             return Ok(found);
         }
-        let (asker, bytes) = (Arc::clone(&self.cluster.asker), pack()?);
+        let bytes = pack(&Params(params.to_vec())).map_err(unanswered)?;
+        let asker = Arc::clone(&self.cluster.asker);
         let put = async move { asker.put(Class::Iteration, bytes).await };
         let (payload, need) = self.cluster.wait_unless(self.stop, put).unwrap_or(Err(CollectError::Interrupted))?;
-        if let Ok(mut kept) = self.kept.lock() {
+        if let (Ok(mut kept), true) = (self.kept.lock(), shared) {
             kept.truncate(REMEMBERED - 1);
             kept.insert(0, KeptParams { params: params.into(), payload: payload.clone(), need: need.clone() });
         }
@@ -195,17 +186,10 @@ impl Collector for RemoteCollector<'_> {
         let (sender, receiver) = std::sync::mpsc::channel();
         let task = self.cluster.handle.spawn(async move {
             let asked: Result<(String, Reply), CollectError> = async {
-                let (experiment, need) = asker.experiment(&request.experiment).await?;
-                let (from, state) = match &request.from {
-                    Some(archive) => {
-                        let (payload, need) = asker.put(Class::Run, pack(archive).map_err(unanswered)?).await?;
-                        (Some(payload), need)
-                    }
-                    None => (None, None),
-                };
-                let CandidateRequest { design, seed, env_steps, .. } = request;
-                let job = asker.job(experiment, Task::Candidate { design, seed, env_steps, from })?;
-                let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
+                let CandidateRequest { experiment, design, seed, env_steps, from } = request;
+                let from = from.as_ref().map(pack).transpose().map_err(unanswered)?;
+                let task = |from| Task::Candidate { design, seed, env_steps, from };
+                let (job, needs) = long::job(&asker, &experiment, from, task).await?;
                 let answer = asker.ask(&job, &needs).await;
                 Ok((job.name, answer?))
             }

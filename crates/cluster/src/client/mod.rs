@@ -3,6 +3,7 @@
 mod ask;
 mod collector;
 mod crew;
+mod long;
 mod measure;
 mod run;
 mod trainer;

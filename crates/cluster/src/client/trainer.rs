@@ -12,10 +12,10 @@ use hwasp_training::{
 };
 use tokio::sync::Notify;
 
-use super::Cluster;
-use super::ask::{Asker, Need};
+use super::ask::Asker;
 use super::run;
-use crate::message::{Class, Job, News, Payload, Task, Told, TrainingAnswer, pack, unpack};
+use super::{Cluster, long};
+use crate::message::{Job, News, Payload, Task, Told, TrainingAnswer, pack, unpack};
 use crate::store::StoreError;
 use crate::subjects;
 
@@ -129,13 +129,7 @@ async fn follow(
     known: u64,
     sender: &std::sync::mpsc::Sender<Item>,
 ) -> Result<TrainingAnswer, CollectError> {
-    let (experiment, need) = asker.experiment(text).await?;
-    let (from, state) = match from {
-        Some(bytes) => asker.put(Class::Run, bytes).await.map(|(payload, need)| (Some(payload), need))?,
-        None => (None, None),
-    };
-    let job = asker.job(experiment, Task::Training { from })?;
-    let needs: Vec<Need> = std::iter::once(need).chain(state).collect();
+    let (job, needs) = long::job(asker, text, from, |from| Task::Training { from }).await?;
     let announced = asker.announce(&job.name);
     let mut reader = Reader { asker, job: &job, next: 0, known, sender };
     let answer = {

@@ -7,11 +7,14 @@ hidden = [128, 128]
 activation = "relu"
 sees_design = true
 
+[design]
+learning_rate_scale = 0.3 # with 1 all goes to a limit within 5,000 gradient steps, while critics know little
+
 [noise]
 command = 0.5
-design = 0.1
+design = 0.2
 design_final = 0.02
-anneal = [0.2, 0.8]
+anneal = [0.3, 0.8]
 train = false
 
 [learner]
@@ -19,6 +22,7 @@ algorithm = "sac"
 
 [sac]
 warmup_steps = 10_000
+design_start = 0.3 # critics see many designs before the first moves
 critic_hidden = [128, 128]
 updates_per_step = 0.5
 learning_rate = 1e-3

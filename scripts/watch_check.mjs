@@ -165,6 +165,7 @@ async function check() {
   await wait("the run counts as interrupted", () => document.querySelector("#run-list .state.interrupted"));
   await others(page, { wait, text });
   if (hand) await frames(page, { wait, media, shoot });
+  quiet = false; // the page asks once more before the browser closes
   if ((await end(again.child, "SIGINT")) !== 0) fault("Ctrl-C is no good end");
 }
 

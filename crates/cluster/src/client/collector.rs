@@ -122,14 +122,17 @@ impl<'a> RemoteCollector<'a> {
             kept.iter().find(|kept| same(&kept.params)).map(|kept| (kept.payload.clone(), kept.need.clone()))
         };
         let shared = jobs > 1;
-        if let Some(found) = self.kept.lock().ok().filter(|_| shared).and_then(|kept| known(&kept)) {
+        if shared
+            && let Ok(kept) = self.kept.lock()
+            && let Some(found) = known(&kept)
+        {
             return Ok(found);
         }
         let bytes = pack(&Params(params.to_vec())).map_err(unanswered)?;
         let asker = Arc::clone(&self.cluster.asker);
         let put = async move { asker.put(Class::Iteration, bytes).await };
         let (payload, need) = self.cluster.wait_unless(self.stop, put).unwrap_or(Err(CollectError::Interrupted))?;
-        if let (Ok(mut kept), true) = (self.kept.lock(), shared) {
+        if shared && let Ok(mut kept) = self.kept.lock() {
             kept.truncate(REMEMBERED - 1);
             kept.insert(0, KeptParams { params: params.into(), payload: payload.clone(), need: need.clone() });
         }

@@ -101,9 +101,12 @@ impl Problem for GraspProblem {
             PalmMotion::Vertical => vec![
                 Preset::new("z-grasp", include_str!("../../../../experiments/z-grasp.toml")),
                 Preset::new("z-grasp-bench", include_str!("../../../../experiments/z-grasp-bench.toml")),
+                Preset::new("3d-grasp-hold", include_str!("../../../../experiments/3d-grasp-hold.toml")),
             ],
             PalmMotion::Spatial => vec![
                 Preset::new("3d-grasp", include_str!("../../../../experiments/3d-grasp.toml")),
+                Preset::new("3d-grasp-way", include_str!("../../../../experiments/3d-grasp-way.toml")),
+                Preset::new("3d-grasp-join", include_str!("../../../../experiments/3d-grasp-join.toml")),
                 Preset::new("3d-approach", include_str!("../../../../experiments/3d-approach.toml")),
                 Preset::new("3d-grasp-bench", include_str!("../../../../experiments/3d-grasp-bench.toml")),
             ],

@@ -13,8 +13,8 @@ fn groups_efforts_and_observations_are_those_of_the_task() {
             let layers = load(name, &catalogue).unwrap();
             let mut spec = resolve(layers.clone(), Some(method), &catalogue).unwrap();
             if spec.train.env_steps < 100_000 {
-                // Old experience takes few steps, which hold no generation of some searches.
-                spec = resolve(layers.with_override("train.env_steps", "1e5"), Some(method), &catalogue).unwrap();
+                // Old experience takes few steps, as parts of a training do, which hold no generation of some searches.
+                spec = resolve(layers.with_override("train.env_steps", "1e6"), Some(method), &catalogue).unwrap();
             }
             if name.ends_with("-grasp") && !cfg!(feature = "mujoco") {
                 let error = Assembly::new(&spec).err().unwrap().to_string();

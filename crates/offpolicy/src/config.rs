@@ -23,6 +23,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `polyak` | 0.005 | share that targets follow by |
 /// | `critic_hidden` | `[256, 256]` | widths of the critics' hidden layers, of ReLU |
 /// | `critic_layer_norm` | false | whether sums of those layers are normalised in each row |
+/// | `initial_value` | mean of the first returns | what critics say of everything at first |
 /// | `privileged` | false | critics see the law's state |
 /// | `context` | false | critics see what the episode is about |
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +65,10 @@ pub struct ReplayConfig {
     /// Whether the sums of those layers are brought to mean 0 and variance 1 in each row: critics that many gradient steps on few
     /// steps of the simulator do not lead astray (Hiraoka et al. 2022).
     pub critic_layer_norm: bool,
+    /// What critics say of everything at first, in the unit of the return; the mean of the returns before the first update where
+    /// it is none. A value above all that can be earned is optimism (Sutton and Barto 2018, section 2.6): a design that nobody has
+    /// tried then is not taken for a bad one, nor one that happens to come first for a good one.
+    pub initial_value: Option<f64>,
     /// Whether critics see the law's state, which the controller does not (Pinto et al. 2018).
     pub privileged: bool,
     /// Whether they see the episode's context.
@@ -89,6 +94,7 @@ impl Default for ReplayConfig {
             polyak: 0.005,
             critic_hidden: vec![256, 256],
             critic_layer_norm: false,
+            initial_value: None,
             privileged: false,
             context: false,
         }
@@ -127,6 +133,8 @@ impl Settings for ReplayConfig {
         fields.counts("critic_hidden", &mut self.critic_hidden, MOST_LAYERS, 1..=WIDEST_LAYER, about);
         let about = "whether sums of the critics' hidden layers are normalised in each row";
         fields.flag("critic_layer_norm", &mut self.critic_layer_norm, about);
+        let about = "discounted return that critics expect everywhere at first; \"none\": the mean of those before the first update";
+        fields.optional_number("initial_value", &mut self.initial_value, -1e9..=1e9, about);
         let about = "whether critics see the law's state, which the controller does not";
         fields.flag("privileged", &mut self.privileged, about);
         let about = "whether critics see what an episode is about and no sensor tells";

@@ -30,7 +30,8 @@ pub(crate) struct Scaling {
     /// from what the command does.
     pub(crate) action: Vec<Affine>,
     /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen. A critic
-    /// that began at 0 would take steps by the thousands to learn what every state is worth alike.
+    /// that began elsewhere would take steps by the thousands to learn what every state is worth alike, which
+    /// [`initial_value`](crate::config::ReplayConfig::initial_value) may be worth.
     pub(crate) value: (f64, f64),
     pub(crate) taken: bool,
 }

@@ -278,3 +278,20 @@ fn reach_is_learned_from_old_experience() {
         assert!((gear - 1.0).abs() < 0.05 && mean > -2.5, "{learner}: gear {gear}, return {mean}");
     }
 }
+
+/// Before critics have learned, they expect everywhere what they are told to, give or take the tenth that they were born with.
+#[test]
+fn critics_begin_at_their_initial_value() {
+    let first_value = |initial_value| {
+        let still = [("td3.learning_rate", "1e-9"), ("td3.critic_learning_rate", "1e-9"), ("td3.warmup_steps", "1200")];
+        let few = [("learner.algorithm", "td3"), ("train.env_steps", "2400"), ("td3.updates_per_step", "0.01")];
+        let told = [("td3.initial_value", initial_value)];
+        let mut recorder = Recorder::default();
+        finish(&assembly("reach", None, &[&few[..], &still, &told].concat()), &mut recorder);
+        let value = recorder.learner.iter().position(|name| name == "value").unwrap();
+        recorder.rows[0].learner[value]
+    };
+    let (measured, zero, more) = (first_value("none"), first_value("0"), first_value("100"));
+    assert!(measured < -5.0 && zero.abs() < 5.0, "{measured} where returns are, {zero} at 0");
+    assert!((more - zero - 100.0).abs() < 1e-3, "{more} is not 100 above {zero}");
+}

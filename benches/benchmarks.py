@@ -32,6 +32,7 @@ def designed(name):
 COMPARISONS = {
     "springs": ("mass-spring-td3", "hwasp,minimal", 20_000),
     "springs-longer": ("mass-spring-td3", "hwasp,minimal", 40_000),
+    "bar": ("bar-length-td3", "hwasp,minimal", 100_000),
     "pendulum": ("pendulum-sac", "fixed", 20_000),
     "cheetah-legs": (designed("half_cheetah_legs"), "hwasp,fixed", 150_000),
     "walker-lengths": (designed("walker2d_lengths"), "hwasp,fixed", 150_000),

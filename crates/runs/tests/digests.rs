@@ -51,7 +51,7 @@ const CASES: [Case; 5] = [
         method: None,
         env_steps: "40000",
         may_vary: true,
-        digest: "92101380e55d0d862d61a727e4e15ed52e60c113a829e0a02f9cb0da0fbe5f0c",
+        digest: "3cb2abefc4e848fd817c44b1a9b6e17c978b74522a5ab8059a41497e95de1f75",
     },
     Case {
         experiment: "reach",

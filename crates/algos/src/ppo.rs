@@ -22,7 +22,6 @@ use crate::metrics::Metrics;
 /// | `discount` | 0.99 | γ |
 /// | `gae_lambda` | 0.95 | λ of the advantages |
 /// | `clip_ratio` | 0.2 | ε of the clipped surrogate |
-/// | `clip_ratio_final` | 1 | fraction of it left at the end of a linear decay |
 /// | `epochs` | 4 | passes over a batch |
 /// | `minibatch_rows` | 1000 | rows of a gradient step at most, the same for all steps but for one row; 0 for the whole batch |
 /// | `learning_rate` | 1e-3 | of Adam |
@@ -43,9 +42,6 @@ pub struct PpoConfig {
     pub gae_lambda: f64,
     /// ε of the clipped surrogate (eq. 7).
     pub clip_ratio: f64,
-    /// What fraction of it is left at the end (Schulman et al. 2017, table 5): large steps while there is much to learn, careful ones
-    /// once it works.
-    pub clip_ratio_final: f64,
     /// Passes over a batch.
     pub epochs: usize,
     /// Rows of a gradient step at most: a batch is divided evenly. 0 for the whole batch.
@@ -81,7 +77,6 @@ impl Default for PpoConfig {
             discount: 0.99,
             gae_lambda: 0.95,
             clip_ratio: 0.2,
-            clip_ratio_final: 1.0,
             epochs: 4,
             minibatch_rows: 1000,
             learning_rate: 1e-3,

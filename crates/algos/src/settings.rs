@@ -31,8 +31,6 @@ impl Settings for PpoConfig {
             1e-3..=1.0,
             "epsilon: how far the probability ratio may leave 1",
         );
-        let about = "fraction of it at the end of a linear decay";
-        fields.number("clip_ratio_final", &mut self.clip_ratio_final, 0.0..=1.0, about);
         fields.count("epochs", &mut self.epochs, 1..=1000, "passes over a batch");
         fields.limits("0 to the rows of an iteration");
         fields.count(

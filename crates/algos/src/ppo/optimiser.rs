@@ -205,13 +205,18 @@ impl<P: Policy> GradientStep<P> {
         policy.log_std(params, progress, &mut self.log_std);
         self.log_std_gradient.fill(0.0);
         let (drawn, rows) = (policy.drawn_actions(), self.minibatch.count);
-        let clip_ratio = (config.clip_ratio * share_left(config.clip_ratio_final, progress)) as f32;
         let mut sums = RowSums { rows, drawn: self.minibatch.draws.count(), ..RowSums::default() };
         for block in self.minibatch.blocks() {
             let rows = self.minibatch.rows(&block);
             let mean = policy.forward(&rows, &mut self.tape);
-            let surrogate =
-                Surrogate { minibatch: &self.minibatch, block, mean, log_std: &self.log_std, drawn, clip_ratio };
+            let surrogate = Surrogate {
+                minibatch: &self.minibatch,
+                block,
+                mean,
+                log_std: &self.log_std,
+                drawn,
+                clip_ratio: config.clip_ratio as f32,
+            };
             let [steps, draws] = surrogate.differentiate(&mut self.cotangent, &mut self.log_std_gradient);
             sums.add(RowSums { kl: steps.kl, clipped: steps.clipped, draws, ..RowSums::default() });
             policy.vjp(&rows, &self.cotangent, &mut self.tape);

@@ -153,11 +153,9 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
     /// All gradient steps that are owed.
     fn learn(&mut self, executor: &dyn Executor, rates: &Rates, iteration: u64) -> Result<Sums, LearnError> {
         let not_finite = |what| LearnError::NotFinite { what, iteration };
-        let discount = self.settings().discount;
         if !self.learned.scaling.taken {
-            let mut scaling = Scaling::of(&self.replay, (&*self.policy, &self.learned.params), discount);
-            scaling.value.0 = self.settings().initial_value.unwrap_or(scaling.value.0);
-            self.learned.scaling = scaling;
+            let policy = (&*self.policy, &self.learned.params[..]);
+            self.learned.scaling = Scaling::of(&self.replay, policy, self.settings());
         }
         let smoothing = self.learned.rule.smoothing(&self.learned.scaling, rates.progress);
         let mut chance = stream(self.seed, Purpose::Replay, iteration, 0);

@@ -3,6 +3,7 @@
 use hwasp_algos::{Exchange, Persist, StateError};
 use hwasp_core::Policy;
 
+use crate::config::ReplayConfig;
 use crate::replay::{Dims, Replay};
 
 /// Centre and scale of a number.
@@ -29,9 +30,9 @@ pub(crate) struct Scaling {
     /// Commands and designs by their limits, efforts by twice the spread of their noise: a critic has to tell what the noise does
     /// from what the command does.
     pub(crate) action: Vec<Affine>,
-    /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen. A critic
-    /// that began elsewhere would take steps by the thousands to learn what every state is worth alike, which
-    /// [`initial_value`](crate::config::ReplayConfig::initial_value) may be worth.
+    /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen, or in
+    /// the mean's place [what they are told](ReplayConfig::initial_value). A critic that began at 0 whatever the returns are would take
+    /// steps by the thousands to learn what every state is worth alike.
     pub(crate) value: (f64, f64),
     pub(crate) taken: bool,
 }
@@ -50,7 +51,7 @@ impl Scaling {
     }
 
     /// That of what a replay holds.
-    pub(crate) fn of<P: Policy>(replay: &Replay, (policy, params): (&P, &[f32]), discount: f64) -> Self {
+    pub(crate) fn of<P: Policy>(replay: &Replay, (policy, params): (&P, &[f32]), settings: &ReplayConfig) -> Self {
         let dims = Dims::of(policy);
         let frames = replay.step_frames();
         let each = |row: &dyn Fn(usize) -> f32| -> Affine {
@@ -62,6 +63,7 @@ impl Scaling {
         };
         let (limits, mut log_std) = (policy.action_limits(), vec![0.0; dims.action]);
         policy.log_std(params, 0.0, &mut log_std);
+        let (mean, spread) = values(replay, settings.discount);
         Self {
             state: (0..dims.state).map(|s| each(&|i| replay.state(i)[s])).collect(),
             context: (0..dims.context).map(|c| each(&|i| replay.context(i)[c])).collect(),
@@ -71,7 +73,7 @@ impl Scaling {
                     None => Affine { center: 0.0, scale: 2.0 * log_std[a].exp() },
                 })
                 .collect(),
-            value: values(replay, discount),
+            value: (settings.initial_value.unwrap_or(mean), spread),
             taken: true,
         }
     }

@@ -283,11 +283,17 @@ fn reach_is_learned_from_old_experience() {
 #[test]
 fn critics_begin_at_their_initial_value() {
     let first_value = |initial_value| {
-        let still = [("td3.learning_rate", "1e-9"), ("td3.critic_learning_rate", "1e-9"), ("td3.warmup_steps", "1200")];
-        let few = [("learner.algorithm", "td3"), ("train.env_steps", "2400"), ("td3.updates_per_step", "0.01")];
-        let told = [("td3.initial_value", initial_value)];
+        let settings = [
+            ("learner.algorithm", "td3"),
+            ("train.env_steps", "2400"),
+            ("td3.warmup_steps", "1200"),
+            ("td3.updates_per_step", "0.01"),
+            ("td3.learning_rate", "1e-9"),
+            ("td3.critic_learning_rate", "1e-9"),
+            ("td3.initial_value", initial_value),
+        ];
         let mut recorder = Recorder::default();
-        finish(&assembly("reach", None, &[&few[..], &still, &told].concat()), &mut recorder);
+        finish(&assembly("reach", None, &settings), &mut recorder);
         let value = recorder.learner.iter().position(|name| name == "value").unwrap();
         recorder.rows[0].learner[value]
     };

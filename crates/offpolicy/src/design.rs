@@ -61,7 +61,7 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
                 .iter()
                 .map(|candidate| {
                     self.put_design(range.clone(), candidate);
-                    self.sample.show_design(&*self.policy, &self.learned.params, &self.learned.params);
+                    self.sample.show_candidate(&*self.policy, &self.learned.params);
                     self.run(executor, &[], Worker::value);
                     self.sum(|worker| worker.values)
                 })

@@ -19,7 +19,7 @@ pub(crate) struct Moments {
     state: Vec<f32>,
     /// What the episodes are about `[B × context]`, row by row.
     context: Vec<f32>,
-    /// The actions of the steps `[action × B]`, column by column: on both sides, for what is drawn once an episode.
+    /// The actions of the steps `[action × B]`, column by column: on both sides, since what was drawn for an episode is held.
     action: Vec<f32>,
 }
 
@@ -47,6 +47,20 @@ impl Moments {
             state: vec![0.0; count * dims.state],
             context: vec![0.0; count * dims.context],
             action: vec![0.0; count * dims.action],
+        }
+    }
+
+    /// Writes a design, of which the controller sees so much, into its inputs, but for those that are held.
+    fn show_design(&mut self, dims: Dims, seen: &[f32], held: &[usize]) {
+        if dims.design == 0 {
+            return;
+        }
+        for inputs in self.obs.chunks_exact_mut(dims.obs) {
+            for (i, (input, &now)) in inputs[dims.obs - dims.design..].iter_mut().zip(seen).enumerate() {
+                if !held.contains(&i) {
+                    *input = now;
+                }
+            }
         }
     }
 
@@ -103,24 +117,16 @@ impl Sample {
     }
 
     /// Shows the controller the design of now, whatever it was when a step was taken: with these parameters at the moments, and
-    /// with those of the policy that acts next at the next ones. There it sees what was drawn for the episode, which is held.
+    /// with those of the policy that acts next at the next ones. What was drawn for an episode is held.
     pub(crate) fn show_design<P: Policy>(&mut self, policy: &P, params: &[f32], next_params: &[f32]) {
-        let (width, design) = (self.dims.obs, self.dims.design);
-        if design == 0 {
-            return;
+        for (moments, params) in [(&mut self.now, params), (&mut self.next, next_params)] {
+            moments.show_design(self.dims, &policy.seen_design(params), policy.seen_draws());
         }
-        for (moments, params, held) in
-            [(&mut self.now, params, &[][..]), (&mut self.next, next_params, policy.seen_draws())]
-        {
-            let seen = policy.seen_design(params);
-            for inputs in moments.obs.chunks_exact_mut(width) {
-                for (i, (input, &now)) in inputs[width - design..].iter_mut().zip(&seen).enumerate() {
-                    if !held.contains(&i) {
-                        *input = now;
-                    }
-                }
-            }
-        }
+    }
+
+    /// Shows it this design at the moments, in the place of what was drawn, too.
+    pub(crate) fn show_candidate<P: Policy>(&mut self, policy: &P, params: &[f32]) {
+        self.now.show_design(self.dims, &policy.seen_design(params), &[]);
     }
 
     /// Row `r` is this step: it counts `n_step` rewards, and values are measured by their centre and scale.

@@ -33,6 +33,14 @@ pub(crate) struct Step<'a, P: Policy, R: Rule<P>> {
 }
 
 impl<P: Policy, R: Rule<P>> Step<'_, P, R> {
+    /// What was drawn for the episodes of a block takes its place among the actions again.
+    fn hold(&self, actions: &mut [f32], block: &Range<usize>) {
+        let (held, stride) = self.sample.actions(block);
+        for a in 0..self.policy.drawn_actions() {
+            actions[a * BLOCK..][..block.len()].copy_from_slice(&held[a * stride..][..block.len()]);
+        }
+    }
+
     /// Brings actions within their limits, as the world does.
     fn limit(&self, actions: &mut [f32], rows: usize) {
         for (column, limits) in actions.chunks_exact_mut(BLOCK).zip(self.limits) {
@@ -176,11 +184,7 @@ impl<P: Policy> Worker<P> {
             }
         }
         step.limit(&mut self.actions, rows);
-        // What was drawn for the episode is held.
-        let (held, stride) = sample.actions(block);
-        for a in 0..step.policy.drawn_actions() {
-            self.actions[a * BLOCK..][..rows].copy_from_slice(&held[a * stride..][..rows]);
-        }
+        step.hold(&mut self.actions, block);
         let inputs = &mut self.inputs[..rows * step.view.width()];
         step.view.fill(sample, &sample.next, block, step.scaling, inputs);
         step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
@@ -200,7 +204,7 @@ impl<P: Policy> Worker<P> {
         }
     }
 
-    /// What the critics say of the policy's actions at the moments of all its rows.
+    /// What the critics say of the policy's actions at the moments of all its rows, with the design of now in each.
     pub(crate) fn value<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
         step.policy.bind(step.params, &mut self.live);
         for i in 0..R::JUDGES {
@@ -208,12 +212,13 @@ impl<P: Policy> Worker<P> {
         }
         (self.values, self.log_probs) = (0.0, 0.0);
         for block in Sample::blocks(self.rows.clone()) {
-            self.appraise(step, &block);
+            self.appraise(step, &block, false);
         }
     }
 
-    /// The same for one block: what the policy would do is left in `wanted`, what of it reaches the world in the critics' inputs.
-    fn appraise<R: Rule<P>>(&mut self, step: &Step<'_, P, R>, block: &Range<usize>) {
+    /// The same for one block, whose drawn design may be held: what the policy would do is left in `wanted`, what of it reaches the
+    /// world in the critics' inputs.
+    fn appraise<R: Rule<P>>(&mut self, step: &Step<'_, P, R>, block: &Range<usize>, hold: bool) {
         let (rows, sample) = (block.len(), step.sample);
         let noise = sample.now_noise.get(block.start..).unwrap_or(&[]);
         let (actions, log_prob) = R::act(step.policy, &sample.rows(&sample.now, block), noise, &mut self.live);
@@ -221,6 +226,9 @@ impl<P: Policy> Worker<P> {
         self.actions.copy_from_slice(actions);
         self.log_probs += log_prob.unwrap_or(&[]).iter().take(rows).map(|&p| f64::from(p)).sum::<f64>();
         step.limit(&mut self.actions, rows);
+        if hold {
+            step.hold(&mut self.actions, block);
+        }
         let inputs = &mut self.inputs[..rows * step.view.width()];
         step.view.fill(sample, &sample.now, block, step.scaling, inputs);
         step.view.fill_actions(rows, (&self.actions, BLOCK), step.scaling, inputs);
@@ -233,6 +241,9 @@ impl<P: Policy> Worker<P> {
 
     /// The gradient of the mean of α·log π(a|s) - min over judges of Q(s, a) by the policy's parameters, where a is the policy's,
     /// left on its tape: through critics, law and controller (Silver et al. 2014, eq. 9; Haarnoja et al. 2018, eq. 9).
+    ///
+    /// What was drawn for an episode is its mean and what was added to it, and the slope there is the mean's. So the controller
+    /// learns to drive every body that it was given, and critics are asked for no body in the posture of another one.
     pub(crate) fn improve<R: Rule<P>>(&mut self, step: &Step<'_, P, R>) {
         let (network, sample) = (&step.critics.network, step.sample);
         // Without a slow copy it was bound for the critics' step, and parameters are as they were.
@@ -247,7 +258,7 @@ impl<P: Policy> Worker<P> {
         let share = 1.0 / step.rows as f32;
         for block in Sample::blocks(self.rows.clone()) {
             let rows = block.len();
-            self.appraise(step, &block);
+            self.appraise(step, &block, true);
             let inputs = &self.inputs[..rows * width];
             self.cotangents.fill(0.0);
             for (i, tape) in self.critics.iter_mut().take(R::JUDGES).enumerate() {

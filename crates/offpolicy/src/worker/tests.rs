@@ -366,9 +366,9 @@ fn the_temperature_follows_entropy() {
     }
 }
 
-/// A stiffness that is drawn once an episode, and a controller that sees it. What follows a step has the stiffness of its episode, not
-/// that of now; the controller is shown the stiffness of now where it is to improve; critics see it in the action alone. They saw what
-/// came of a stiffness for a step, and took the present one for what followed.
+/// A stiffness that is drawn once an episode, and a controller that sees it. Each step, and what follows it, has the stiffness of its
+/// episode, not that of now; critics see it in the action alone, and their slope by it is that of the mean. A candidate of a search
+/// takes its place.
 #[test]
 fn a_drawn_design_is_held() {
     let policy = policy_with(&[], false, Placement::Episode, true);
@@ -405,7 +405,7 @@ fn a_drawn_design_is_held() {
     let close = |given: Vec<f32>, wanted: [f32; 6]| {
         assert!(given.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{given:?} instead of {wanted:?}");
     };
-    close(rows(&sample.now), [Y[0], 0.6, Y[1], 0.6, Y[2], 0.6]);
+    close(rows(&sample.now), [Y[0], -0.5, Y[1], 0.0, Y[2], 0.5]);
     close(rows(&sample.next), [NEXT[0], -0.5, NEXT[1], 0.0, NEXT[2], 0.5]);
 
     let view = View::new(dims, false, false);
@@ -419,5 +419,14 @@ fn a_drawn_design_is_held() {
     let squares = (0..3).map(|r| (f64::from(drawn[r]) * (1.0 - DISCOUNT) - REWARD[r]).powi(2)).sum::<f64>();
     assert!((worker.squares - squares).abs() < 1e-4, "{} and {squares}", worker.squares);
     worker.improve(&scene.step());
+    assert!((worker.values - drawn.iter().map(|&k| f64::from(k)).sum::<f64>()).abs() < 1e-4, "{}", worker.values);
+    let mut gradient = vec![0.0; scene.params.len()];
+    worker.policy_gradient(&scene.policy, &mut gradient);
+    // Of k = 4·sigmoid(u) at 3.2: dk/du = 4·0.8·0.2, downhill.
+    assert!((gradient[3] + 0.64).abs() < 1e-5, "{gradient:?}");
+
+    scene.sample.show_candidate(&scene.policy, &scene.params);
+    close(scene.sample.rows(&scene.sample.now, &(0..3)).obs.to_vec(), [Y[0], 0.6, Y[1], 0.6, Y[2], 0.6]);
+    worker.value(&scene.step());
     assert!((worker.values - 3.0 * 3.2).abs() < 1e-4, "{}: the stiffness of now", worker.values);
 }

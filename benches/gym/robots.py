@@ -14,7 +14,7 @@ import shutil
 
 import gymnasium
 
-from designed import LEARNER as DESIGNING
+from designed import LEARNERS as DESIGNING
 
 HERE = pathlib.Path(__file__).parent
 ROBOTS = {
@@ -121,7 +121,7 @@ def write_designed(robot, folder):
     """Writes the experiment of a robot whose body is designed, with its model; returns its path."""
     copy_model(DESIGNED[robot], folder)
     path = pathlib.Path(folder) / f"{robot}.toml"
-    path.write_text((HERE / f"{robot}.toml").read_text() + DESIGNING)
+    path.write_text((HERE / f"{robot}.toml").read_text() + DESIGNING[robot])
     return path
 
 

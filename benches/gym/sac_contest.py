@@ -1,6 +1,6 @@
-"""Whole trainings by SAC: the program beside Stable-Baselines3, with the same networks, batch, rates and steps, on one thread each.
+"""Whole trainings by SAC: the program beside Stable-Baselines3, with the same networks, batch, rates and steps, and as many threads.
 
-    python benches/gym/sac_contest.py [--robots hopper half_cheetah] [--seeds 100 101 102] [--who both] [--out FILE]
+    python benches/gym/sac_contest.py [--robots hopper half_cheetah] [--seeds 100 101 102] [--threads 1] [--who both] [--out FILE]
 
 Needs the packages gymnasium[mujoco], mujoco and stable-baselines3, and the program as `cargo build --release` leaves it, or that
 of --hwasp. FILE gets a line of JSON for each training; what stands there is not trained again, so that a contest that was
@@ -59,14 +59,14 @@ def score(model, name):
     return sum(returns) / len(returns)
 
 
-def theirs(robot, seed, steps, _):
+def theirs(robot, seed, steps, threads, _):
     """Stable-Baselines3 with its defaults."""
     import gymnasium
     import torch
     from stable_baselines3 import SAC
     from stable_baselines3.common.monitor import Monitor
 
-    torch.set_num_threads(1)
+    torch.set_num_threads(threads)
     env = Monitor(gymnasium.make(ROBOTS[robot]))
     model = SAC("MlpPolicy", env, learning_starts=10_000, device="cpu", seed=seed)
     cpu, wall = processors(resource.RUSAGE_SELF), time.perf_counter()
@@ -88,13 +88,13 @@ def theirs(robot, seed, steps, _):
     return {"steps": steps, "return": score(model, ROBOTS[robot]), "cpu_s": cpu, "wall_s": wall, "curve": curve(ends, steps)}
 
 
-def ours(robot, seed, steps, program):
+def ours(robot, seed, steps, threads, program):
     """The program's command."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         path = write(robot, "sac", folder, steps)
         # No checkpoints: theirs has none.
-        command = [program, "train", path, "--threads", 1, "--seed", seed, "--checkpoint-every", 86_400, "--out", folder / "run"]
+        command = [program, "train", path, "--threads", threads, "--seed", seed, "--checkpoint-every", 86_400, "--out", folder / "run"]
         cpu = processors(resource.RUSAGE_CHILDREN)
         subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL, check=True)
         cpu = processors(resource.RUSAGE_CHILDREN) - cpu
@@ -106,12 +106,14 @@ def ours(robot, seed, steps, program):
 
 
 TRAININGS = {"ours": ours, "theirs": theirs}
+# What tells one line from another.
+KEY = ("who", "robot", "seed", "budget", "threads")
 
 
 def done(path):
     """What stands in the file."""
     lines = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-    return {(line["who"], line["robot"], line["seed"], line["budget"]) for line in lines}
+    return {tuple(line[key] for key in KEY) for line in lines}
 
 
 def main():
@@ -119,17 +121,17 @@ def main():
     parser.add_argument("--robots", nargs="*", choices=ROBOTS, default=["hopper", "half_cheetah"])
     parser.add_argument("--seeds", nargs="*", type=int, default=[100, 101, 102])
     parser.add_argument("--steps", type=int, default=300_000)
+    parser.add_argument("--threads", type=int, default=1, help="of each, one training at a time")
     parser.add_argument("--who", choices=[*TRAININGS, "both"], default="both")
     parser.add_argument("--hwasp", type=pathlib.Path, default=HERE.parent.parent / "target" / "release" / "hwasp")
     parser.add_argument("--out", type=pathlib.Path, default=HERE / "sac_contest.jsonl")
     options = parser.parse_args()
     who = list(TRAININGS) if options.who == "both" else [options.who]
-    for key in [(one, robot, seed, options.steps) for seed in options.seeds for robot in options.robots for one in who]:
+    for key in [(one, robot, seed, options.steps, options.threads) for seed in options.seeds for robot in options.robots for one in who]:
         if key in done(options.out):
             continue
-        one, robot, seed, steps = key
-        result = TRAININGS[one](robot, seed, steps, options.hwasp.resolve())
-        line = json.dumps({"who": one, "robot": robot, "seed": seed, "budget": steps, **result})
+        one, *training = key
+        line = json.dumps({**dict(zip(KEY, key)), **TRAININGS[one](*training, options.hwasp.resolve())})
         with options.out.open("a") as file:
             file.write(line + "\n")
         print(line, flush=True)

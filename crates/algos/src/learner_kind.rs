@@ -70,6 +70,11 @@ pub trait LearnerKind: Send + Sync {
         false
     }
 
+    /// The key, in its table, of a setting that asks for a design that is drawn once an episode; none where it is not set.
+    fn wants_draws(&self, _settings: &dyn AnySettings) -> Option<&'static str> {
+        None
+    }
+
     /// The defaults of the value baseline beside it.
     fn baseline(&self, _settings: &dyn AnySettings, rows: usize) -> BaselineSettings {
         let mut baseline = BaselineSettings::default();

@@ -82,6 +82,13 @@ fn a_design_is_drawn_once_an_episode() {
         let sampler = sampler(common::policy_spec(placements), &spec(&[]));
         let policy = sampler.policy();
         assert_eq!(policy.drawn_actions(), drawn.len());
+        let params = policy.init(3, 1.0);
+        for (&i, u) in drawn.iter().zip(policy.drawn_params()) {
+            let mut moved = params.clone();
+            moved[u] += 1.0;
+            let (before, after) = (policy.design(&params), policy.design(&moved));
+            assert!((0..4).all(|k| (before[k] == after[k]) != (k == i)), "{i}: {before:?} {after:?}");
+        }
         let batch = collect(&sampler, &Serial, 100, EpisodeKind::Training);
         assert_eq!(
             common::bits(&batch),

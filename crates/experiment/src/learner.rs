@@ -107,6 +107,12 @@ impl LearnerSettings {
         self.kind().discount(&*self.settings[self.chosen])
     }
 
+    /// The setting of the chosen one that asks for a design that is drawn once an episode, by its whole key, where it is set.
+    pub fn wants_draws(&self) -> Option<String> {
+        let key = self.kind().wants_draws(&*self.settings[self.chosen])?;
+        Some(format!("{}.{key}", self.algorithm()))
+    }
+
     /// The settings of a learner, of a type that the caller knows.
     pub fn of<S: 'static>(&self) -> Option<&S> {
         self.settings.iter().find_map(|settings| settings.as_any().downcast_ref())

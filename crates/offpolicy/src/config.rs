@@ -16,6 +16,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `policy_delay` | 2 for TD3, 1 for SAC | gradient steps of the critics for one of the policy |
 /// | `design_start` | 0 | share of the schedules that is done before the design moves |
 /// | `design_search` | 0 | steps of the simulator from one search of the design by the critics to the next; 0: the design follows their slope |
+/// | `design_returns` | 0 | episodes whose returns move the means of designs that are drawn once an episode; 0: critics do |
 /// | `forget_beyond` | 0 | share of its range by which a design parameter moves until the replay is emptied; 0: it is kept |
 /// | `learning_rate` | 3e-4 | of the policy, by Adam |
 /// | `critic_learning_rate` | 3e-4 | of the critics |
@@ -49,6 +50,9 @@ pub struct ReplayConfig {
     /// Steps of the simulator from one search of the design to the next: it goes where critics see the most value at the starts of
     /// episodes (Luck et al. 2019). With 0 there is no search, and the design follows the critics' slope.
     pub design_search: usize,
+    /// Episodes, the latest ones, whose returns move what is drawn once an episode, in the place of the critics: in as many episodes
+    /// its means move by their covariance with the returns, times the design's own rate. With 0 critics move them.
+    pub design_returns: usize,
     /// The share of its range by which a design parameter moves until the replay is emptied, as one would where the design is in
     /// the environment. With 0 all is kept: in the graph, old experience stays true.
     pub forget_beyond: f64,
@@ -87,6 +91,7 @@ impl Default for ReplayConfig {
             policy_delay: 1,
             design_start: 0.0,
             design_search: 0,
+            design_returns: 0,
             forget_beyond: 0.0,
             learning_rate: 3e-4,
             critic_learning_rate: 3e-4,
@@ -122,6 +127,8 @@ impl Settings for ReplayConfig {
         fields.number("design_start", &mut self.design_start, 0.0..=1.0, about);
         let about = "steps of the simulator from one search of the design by the critics to the next; 0: it follows their slope";
         fields.count("design_search", &mut self.design_search, 0..=MOST_ROWS, about);
+        let about = "episodes whose returns move designs that are drawn once an episode; 0: critics do";
+        fields.count("design_returns", &mut self.design_returns, 0..=MOST_ROWS, about);
         let about = "share of its range by which a design parameter moves until the replay is emptied; 0: it is kept";
         fields.number("forget_beyond", &mut self.forget_beyond, 0.0..=1.0, about);
         fields.number("learning_rate", &mut self.learning_rate, RATES, "Adam's, for the policy");

@@ -43,6 +43,11 @@ fn holding(mut replay: ReplayConfig, rows: usize) -> ReplayConfig {
     replay
 }
 
+/// The setting that asks for a design that is drawn once an episode.
+fn wants_draws(settings: &ReplayConfig) -> Option<&'static str> {
+    (settings.design_returns > 0).then_some("design_returns")
+}
+
 impl LearnerKind for Td3Kind {
     fn name(&self) -> &'static str {
         "td3"
@@ -63,6 +68,10 @@ impl LearnerKind for Td3Kind {
 
     fn keeps_experience(&self) -> bool {
         true
+    }
+
+    fn wants_draws(&self, settings: &dyn AnySettings) -> Option<&'static str> {
+        wants_draws(&own::<Td3Config>(settings).replay)
     }
 
     fn discount(&self, settings: &dyn AnySettings) -> f64 {
@@ -99,6 +108,10 @@ impl LearnerKind for SacKind {
 
     fn state_dependent_std(&self) -> bool {
         true
+    }
+
+    fn wants_draws(&self, settings: &dyn AnySettings) -> Option<&'static str> {
+        wants_draws(&own::<SacConfig>(settings).replay)
     }
 
     fn discount(&self, settings: &dyn AnySettings) -> f64 {

@@ -33,7 +33,7 @@ pub struct OffPolicy<P: Policy, R: Rule<P>> {
     pub(crate) policy: Arc<P>,
     pub(crate) seed: u64,
     /// Times the learning rate, of design parameters.
-    design_lr_scale: f64,
+    pub(crate) design_lr_scale: f64,
     view: View,
     limits: Vec<Option<(f32, f32)>>,
     pub(crate) learned: Learned<R>,
@@ -143,11 +143,11 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let still = progress < settings.design_start || settings.design_search > 0;
         let design = if still { 0.0 } else { self.design_lr_scale };
         let critic = (settings.critic_learning_rate * decay) as f32;
-        Rates {
-            policy: group_rates(self.policy.groups(), count, policy, design, 0.0),
-            critic: vec![critic; self.critic_gradient.len()],
-            progress,
+        let mut policy = group_rates(self.policy.groups(), count, policy, design, 0.0);
+        if settings.design_returns > 0 {
+            self.policy.drawn_params().into_iter().for_each(|u| policy[u] = 0.0);
         }
+        Rates { policy, critic: vec![critic; self.critic_gradient.len()], progress }
     }
 
     /// All gradient steps that are owed.
@@ -309,7 +309,7 @@ impl<P: Policy, R: Rule<P>> Learner for OffPolicy<P, R> {
                 }
             }
         }
-        self.attend_design(executor, batch.rows(), progress, iteration);
+        self.attend_design(executor, batch, progress, iteration);
         let (center, scale) = self.learned.scaling.value;
         let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
         let td_error = scale * mean(sums.squares, sums.steps).sqrt();

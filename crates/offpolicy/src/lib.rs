@@ -9,6 +9,7 @@
 mod config;
 mod critic;
 mod design;
+mod earned;
 mod kind;
 mod learner;
 mod replay;

@@ -41,6 +41,8 @@ enum Mark {
     Cut,
     /// The same of an episode that is over for good.
     Over,
+    /// The same of an episode that the batch had no more room for.
+    Left,
 }
 
 /// Steps of whole episodes in a ring of frames. A frame is a moment: what was seen, done and earned. What follows a step is the
@@ -200,7 +202,11 @@ impl Replay {
                 context,
                 action: &nothing,
                 reward: 0.0,
-                mark: if episode.end == End::Terminated { Mark::Over } else { Mark::Cut },
+                mark: match episode.end {
+                    End::Terminated => Mark::Over,
+                    _ if episode.cut => Mark::Left,
+                    _ => Mark::Cut,
+                },
             });
         }
         undo
@@ -266,6 +272,33 @@ impl Replay {
         self.step_frames().filter(begins).collect()
     }
 
+    /// The latest episodes that were not left halfway, the newest first, and at most so many: the frames that they began with, and
+    /// what they earned in all.
+    pub(crate) fn latest(&self, most: usize) -> Vec<(usize, f64)> {
+        let count = self.frames();
+        let mut episodes = Vec::new();
+        let (mut whole, mut first, mut earned) = (false, 0, 0.0);
+        for k in 0..count {
+            let at = (self.head + 2 * count - 1 - k) % count;
+            if self.mark[at] == Mark::Step {
+                (first, earned) = (at, earned + f64::from(self.reward[at]));
+                continue;
+            }
+            if whole {
+                episodes.push((first, earned));
+            }
+            if episodes.len() == most {
+                return episodes;
+            }
+            (whole, earned) = (self.mark[at] != Mark::Left, 0.0);
+        }
+        // The oldest of a full ring may have lost its beginning.
+        if whole && count < self.capacity {
+            episodes.push((first, earned));
+        }
+        episodes
+    }
+
     /// Where `n` steps from step `i` on lead to, or as many as its episode has left.
     pub(crate) fn ahead(&self, i: usize, n: usize, discount: f64) -> Ahead {
         let (mut at, mut reward, mut factor) = (i, 0.0, 1.0);
@@ -293,7 +326,7 @@ impl Replay {
                     rest *= discount;
                     return Some((earned, rest));
                 }
-                Mark::Cut => rest = 1.0,
+                Mark::Cut | Mark::Left => rest = 1.0,
                 Mark::Over => rest = 0.0,
             }
             earned = 0.0;
@@ -334,7 +367,8 @@ impl Persist for Replay {
                 0 => Mark::Step,
                 1 => Mark::Cut,
                 2 => Mark::Over,
-                other => return Err(with.refuse("mark", other as f64, "0, 1 or 2")),
+                3 => Mark::Left,
+                other => return Err(with.refuse("mark", other as f64, "0 to 3")),
             });
         }
         self.steps = self.mark.iter().filter(|&&mark| mark == Mark::Step).count();

@@ -57,12 +57,22 @@ pub const SOFT: Settings = &[
     ("sac.design_search", "2000"),
 ];
 
+/// A design that is drawn once an episode, and moved by what 60 of them earned.
+pub const EARNED: Settings = &[
+    ("learner.algorithm", "sac"),
+    ("sac.warmup_steps", "1500"),
+    ("sac.critic_hidden", "[16, 16]"),
+    ("sac.updates_per_step", "0.03"),
+    ("sac.design_returns", "60"),
+    ("controller.sees_design", "true"),
+];
+
 /// The last two fifths polish the controller.
 pub const POLISH: Settings =
     &[("polish.share", "0.4"), ("polish.progress_start", "0.2"), ("ppo.learning_rate_final", "0.1")];
 
 /// Every kind of thing that learns: method, settings.
-pub const KINDS: [(&str, Settings); 21] = [
+pub const KINDS: [(&str, Settings); 22] = [
     ("hwasp", &[]),
     ("minimal", &[("baseline.kind", MLP), ("ppo.learning_rate_final", "0.1")]),
     ("episode", &[("controller.sees_design", "true")]),
@@ -82,6 +92,7 @@ pub const KINDS: [(&str, Settings); 21] = [
     ("hwasp", SOFT),
     ("episode", SOFT),
     ("fixed", SOFT),
+    ("episode", EARNED),
     ("hwasp", POLISH),
     ("cmaes", POLISH),
 ];

@@ -42,6 +42,14 @@ pub enum AssembleError {
     /// The same elsewhere, in its own words.
     #[error("{0}")]
     Elsewhere(String),
+    /// A setting for a design that is drawn once an episode, where none is.
+    #[error(
+        "{key} is for a design that is drawn once an episode, and none is; set design.placement = \"episode\", or leave it out"
+    )]
+    NoDraws {
+        /// The setting.
+        key: String,
+    },
     /// A search whose budget does not hold one generation.
     #[error(
         "train.env_steps = {given}{} is less than one generation takes: {needed} steps, for {popsize} candidate{} of {each} \
@@ -143,6 +151,13 @@ impl Assembly {
         let parameters = assembly.policy.param_count();
         if experiment.method == Method::Cmaes && !experiment.cmaes.separable && parameters > MOST_CORRELATED {
             return Err(AssembleError::Covariance { parameters });
+        }
+        let designs = !experiment.method.searches() && !assembly.policy.free_design().is_empty();
+        if let Some(key) = experiment.learner.wants_draws()
+            && designs
+            && assembly.policy.drawn_actions() == 0
+        {
+            return Err(AssembleError::NoDraws { key });
         }
         assembly.check_budget()?;
         Ok(assembly)

@@ -279,6 +279,21 @@ fn reach_is_learned_from_old_experience() {
     }
 }
 
+/// Nothing that is drawn, nothing for returns to move; a design that is fixed asks for nothing.
+#[test]
+fn returns_move_what_is_drawn_alone() {
+    let assemble = |method| {
+        Assembly::new(&hwasp_testing::small(method, &[("learner.algorithm", "sac"), ("sac.design_returns", "60")]))
+    };
+    for method in ["hwasp", "minimal"] {
+        let error = assemble(method).err().unwrap().to_string();
+        let told = "sac.design_returns is for a design that is drawn once an episode, and none is; \
+                    set design.placement = \"episode\", or leave it out";
+        assert_eq!(error, told);
+    }
+    assert!(assemble("episode").is_ok() && assemble("fixed").is_ok());
+}
+
 /// Before critics have learned, they expect everywhere what they are told to, give or take the tenth that they were born with.
 #[test]
 fn critics_begin_at_their_initial_value() {

@@ -398,6 +398,12 @@ impl Policy for HardwarePolicy {
         self.composition.layout.drawn
     }
 
+    fn drawn_params(&self) -> Vec<usize> {
+        let (layout, begin) = (&self.composition.layout, self.design_params().start);
+        let stand_in = |i| self.composition.free.iter().position(|free| free == i).map(|at| begin + at);
+        layout.sampled[..layout.drawn].iter().filter_map(stand_in).collect()
+    }
+
     fn seen_design(&self, params: &[f32]) -> Vec<f32> {
         let mut seen = vec![0.0; self.obs_dim() - self.observations];
         self.see_design(&self.design(params), &mut seen);

@@ -97,6 +97,10 @@ pub trait Policy: Send + Sync {
     fn drawn_actions(&self) -> usize {
         0
     }
+    /// Where the stand-ins of their means lie among the parameters, in the same order.
+    fn drawn_params(&self) -> Vec<usize> {
+        Vec::new()
+    }
     /// What the controller sees of the design with these parameters: its last inputs. Nothing where it sees none.
     fn seen_design(&self, _params: &[f32]) -> Vec<f32> {
         Vec::new()

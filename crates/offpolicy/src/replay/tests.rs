@@ -68,6 +68,23 @@ fn starts_are_where_episodes_began() {
     assert_eq!((replay.starts().len(), replay.steps()), (0, 0));
 }
 
+/// Episodes that earned 1 + 2 + 3, 4 and, left halfway, 5 + 6; then 7 + 8 in a ring of 12, which overwrites the beginning of the first.
+#[test]
+fn the_latest_whole_episodes() {
+    let mut replay = Replay::new(DIMS, 12);
+    let mut first = batch(1, &[(3, End::Truncated), (1, End::Terminated), (2, End::Truncated)]);
+    first.episodes[2].cut = true;
+    replay.push(&first, &[None]);
+    assert_eq!(replay.latest(9), [(4, 4.0), (0, 6.0)]);
+    assert_eq!(replay.latest(1), [(4, 4.0)]);
+    replay.push(&batch(7, &[(2, End::Truncated)]), &[None]);
+    assert_eq!(replay.latest(9), [(9, 15.0), (4, 4.0)], "a full ring may have lost a beginning");
+    replay.push(&batch(9, &[(2, End::Truncated)]), &[None]);
+    assert_eq!(replay.latest(9), [(0, 19.0), (9, 15.0), (4, 4.0)]);
+    replay.empty();
+    assert_eq!(replay.latest(9), []);
+}
+
 /// The world saw the command at its limit, and the critic has to see what the world saw.
 #[test]
 fn actions_are_kept_within_their_limits() {

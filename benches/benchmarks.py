@@ -35,7 +35,7 @@ COMPARISONS = {
     "bar": ("bar-length-td3", "hwasp,minimal", 100_000),
     "pendulum": ("pendulum-sac", "fixed", 20_000),
     "cheetah-legs": (designed("half_cheetah_legs"), "hwasp,fixed", 150_000),
-    "walker-lengths": (designed("walker2d_lengths"), "hwasp,fixed", 300_000),
+    "walker-lengths": (designed("walker2d_lengths"), "hwasp,fixed", 150_000),
 }
 
 

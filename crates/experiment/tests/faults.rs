@@ -62,6 +62,8 @@ wrong_files! {
     statistics_of_a_search: "method = \"ars\"\n[controller]\nnormalize_observations = true\n[methods.cmaes-rl.controller]\nnormalize_observations = true\n";
     experience_measured_anew: "[learner]\nalgorithm = \"td3\"\n[controller]\nnormalize_observations = true\n[train]\nreward_scaling = true\n";
     replays_that_hold_too_little: "[learner]\nalgorithm = 'td3'\n[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
+    designs_that_two_things_move: "[learner]\nalgorithm = 'sac'\n[sac]\ndesign_returns = 60\ndesign_search = 5000\n";
+    too_few_returns: "[learner]\nalgorithm = 'sac'\n[sac]\ndesign_returns = 9\n";
     polish_out_of_range: "[polish]\nshare = 0.95\nworld = \"real\"\nprogress_start = -1\n";
     polish_of_less_than_an_iteration: "[train]\nenv_steps = 40000\n[polish]\nshare = 0.09\n";
     polish_that_leaves_too_little: "[train]\nenv_steps = 8000\n[polish]\nshare = 0.6\n";

@@ -16,6 +16,9 @@ pub struct Td3Kind;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SacKind;
 
+/// The fewest episodes whose returns may move a design.
+const FEWEST_RETURNS: usize = 10;
+
 /// What of the settings does not go together with iterations of so many rows.
 fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Option<SettingFault> {
     let frames = settings.replay_frames;
@@ -30,11 +33,26 @@ fn fault(table: &str, settings: &ReplayConfig, rows: usize, portion: &str) -> Op
         });
     }
     // An episode ends with a moment of its own.
-    (frames < 2 * rows).then(|| SettingFault {
-        key: "replay_frames",
-        message: format!("{table}.replay_frames = {frames} is less than twice the {portion}"),
-        hint: "hold at least two iterations; old experience is what the learner lives on".into(),
-    })
+    if frames < 2 * rows {
+        return Some(SettingFault {
+            key: "replay_frames",
+            message: format!("{table}.replay_frames = {frames} is less than twice the {portion}"),
+            hint: "hold at least two iterations; old experience is what the learner lives on".into(),
+        });
+    }
+    let (window, search) = (settings.design_returns, settings.design_search);
+    let (message, hint) = if window > 0 && search > 0 {
+        (format!("and {table}.design_search = {search} both move the design"), "leave one of them out")
+    } else if (1..FEWEST_RETURNS).contains(&window) {
+        let needed = format!("is less than the {FEWEST_RETURNS} episodes that it takes to tell merit from chance");
+        (needed, "60 are a good beginning; 0 leaves the design to the critics")
+    } else if window > frames / 2 {
+        (format!("episodes do not fit into {table}.replay_frames = {frames}"), "60 are a good beginning")
+    } else {
+        return None;
+    };
+    let message = format!("{table}.design_returns = {window} {message}");
+    Some(SettingFault { key: "design_returns", message, hint: hint.into() })
 }
 
 /// The settings of a kind, with a replay that holds iterations of so many rows.

@@ -58,9 +58,8 @@ impl<P: Policy, R: Rule<P>> OffPolicy<P, R> {
         let returns: Vec<f64> = latest.iter().map(|&(_, earned)| earned).collect();
         let Some(merits) = beyond_trend(&returns).filter(|_| latest.len() == window) else { return };
         let rate = self.design_lr_scale * new as f64 / window as f64;
-        let limits = self.policy.action_limits();
         for (a, u) in self.policy.drawn_params().into_iter().enumerate() {
-            let Some((lo, hi)) = limits[a] else { continue };
+            let Some((lo, hi)) = self.limits[a] else { continue };
             let share = |first: usize| f64::from((self.replay.action(first)[a] - lo) / (hi - lo));
             let products = latest.iter().zip(&merits).map(|(&(first, _), merit)| merit * share(first));
             let covariance = products.sum::<f64>() / window as f64;

@@ -35,7 +35,7 @@ pub struct OffPolicy<P: Policy, R: Rule<P>> {
     /// Times the learning rate, of design parameters.
     pub(crate) design_lr_scale: f64,
     view: View,
-    limits: Vec<Option<(f32, f32)>>,
+    pub(crate) limits: Vec<Option<(f32, f32)>>,
     pub(crate) learned: Learned<R>,
     pub(crate) replay: Replay,
     /// Working memory.

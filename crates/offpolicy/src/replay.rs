@@ -272,14 +272,18 @@ impl Replay {
         self.step_frames().filter(begins).collect()
     }
 
+    /// All frames, the newest first.
+    fn newest_first(&self) -> impl Iterator<Item = usize> + '_ {
+        let count = self.frames();
+        (0..count).map(move |k| (self.head + 2 * count - 1 - k) % count)
+    }
+
     /// The latest episodes that were not left halfway, the newest first, and at most so many: the frames that they began with, and
     /// what they earned in all.
     pub(crate) fn latest(&self, most: usize) -> Vec<(usize, f64)> {
-        let count = self.frames();
         let mut episodes = Vec::new();
         let (mut whole, mut first, mut earned) = (false, 0, 0.0);
-        for k in 0..count {
-            let at = (self.head + 2 * count - 1 - k) % count;
+        for at in self.newest_first() {
             if self.mark[at] == Mark::Step {
                 (first, earned) = (at, earned + f64::from(self.reward[at]));
                 continue;
@@ -293,7 +297,7 @@ impl Replay {
             (whole, earned) = (self.mark[at] != Mark::Left, 0.0);
         }
         // The oldest of a full ring may have lost its beginning.
-        if whole && count < self.capacity {
+        if whole && self.frames() < self.capacity {
             episodes.push((first, earned));
         }
         episodes
@@ -316,10 +320,8 @@ impl Replay {
     /// Of each step held, from the newest on: what its episode still earned in the replay, discounted, and what the value of the
     /// moment after it is worth, 0 where it was over for good.
     pub(crate) fn returns(&self, discount: f64) -> Vec<(f64, f64)> {
-        let count = self.frames();
         let (mut earned, mut rest) = (0.0, 0.0);
-        let back = (0..count).filter_map(|k| {
-            let at = (self.head + 2 * count - 1 - k) % count;
+        let back = self.newest_first().filter_map(|at| {
             match self.mark[at] {
                 Mark::Step => {
                     earned = f64::from(self.reward[at]) + discount * earned;

@@ -63,15 +63,16 @@ minibatch_rows = 64
 normalize_advantages = false
 recompute_advantages = true
 """,
-    # Defaults; warm-up as RL Baselines3 Zoo has it. The temperature begins at about 1, like theirs: returns of the warm-up spread by
-    # 8 to 17.
+    # Defaults; warm-up as RL Baselines3 Zoo has it. Critics begin at 0 and the temperature at 1, in units of the return, like theirs.
     "sac": """
 [learner]
 algorithm = "sac"
 
 [sac]
 warmup_steps = 10_000
-temperature = 0.08
+initial_value = 0.0
+value_scale = 1.0
+temperature = 1.0
 """,
     "trpo": """
 [learner]

@@ -64,6 +64,7 @@ wrong_files! {
     replays_that_hold_too_little: "[learner]\nalgorithm = 'td3'\n[td3]\nreplay_frames = 900\n[train]\nepisodes_per_iteration = 4\n";
     designs_that_two_things_move: "[learner]\nalgorithm = 'sac'\n[sac]\ndesign_returns = 60\ndesign_search = 5000\n";
     too_few_returns: "[learner]\nalgorithm = 'sac'\n[sac]\ndesign_returns = 9\n";
+    returns_that_no_replay_holds: "[learner]\nalgorithm = 'sac'\n[sac]\ndesign_returns = 6000\nreplay_frames = 10000\n";
     polish_out_of_range: "[polish]\nshare = 0.95\nworld = \"real\"\nprogress_start = -1\n";
     polish_of_less_than_an_iteration: "[train]\nenv_steps = 40000\n[polish]\nshare = 0.09\n";
     polish_that_leaves_too_little: "[train]\nenv_steps = 8000\n[polish]\nshare = 0.6\n";

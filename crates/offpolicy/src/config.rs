@@ -25,6 +25,7 @@ use hwasp_settings::{Fields, Settings};
 /// | `critic_hidden` | `[256, 256]` | widths of the critics' hidden layers, of ReLU |
 /// | `critic_layer_norm` | false | whether sums of those layers are normalised in each row |
 /// | `initial_value` | mean of the first returns | what critics say of everything at first |
+/// | `value_scale` | spread of the first returns | what critics say is in units of this |
 /// | `privileged` | false | critics see the law's state |
 /// | `context` | false | critics see what the episode is about |
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +74,9 @@ pub struct ReplayConfig {
     /// it is none. A value above all that can be earned is optimism (Sutton and Barto 2018, section 2.6): a design that nobody has
     /// tried then is not taken for a bad one, nor one that happens to come first for a good one.
     pub initial_value: Option<f64>,
+    /// The unit of what critics say, and of the temperature, in units of the return; the spread of the returns before the first update
+    /// where it is none. Their step size is the same whatever the unit: in a small one they take longer to say much.
+    pub value_scale: Option<f64>,
     /// Whether critics see the law's state, which the controller does not (Pinto et al. 2018).
     pub privileged: bool,
     /// Whether they see the episode's context.
@@ -100,6 +104,7 @@ impl Default for ReplayConfig {
             critic_hidden: vec![256, 256],
             critic_layer_norm: false,
             initial_value: None,
+            value_scale: None,
             privileged: false,
             context: false,
         }
@@ -142,6 +147,9 @@ impl Settings for ReplayConfig {
         fields.flag("critic_layer_norm", &mut self.critic_layer_norm, about);
         let about = "discounted return that critics expect everywhere at first; \"none\": the mean of those before the first update";
         fields.optional_number("initial_value", &mut self.initial_value, -1e9..=1e9, about);
+        let about =
+            "unit of what critics say, in units of the return; \"none\": the spread of those before the first update";
+        fields.optional_number("value_scale", &mut self.value_scale, 1e-9..=1e9, about);
         let about = "whether critics see the law's state, which the controller does not";
         fields.flag("privileged", &mut self.privileged, about);
         let about = "whether critics see what an episode is about and no sensor tells";

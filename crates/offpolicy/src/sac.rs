@@ -20,7 +20,7 @@ pub type Sac<P> = OffPolicy<P, SacRule>;
 ///
 /// | name | default | purpose |
 /// |---|---|---|
-/// | `temperature` | 0.02 | α at first, as a share of the spread of the returns that the warm-up saw |
+/// | `temperature` | 0.02 | α at first, in units of [`value_scale`](ReplayConfig::value_scale) |
 /// | `train_temperature` | true | whether it is learned |
 /// | `temperature_learning_rate` | 3e-4 | step size of Adam for log α |
 /// | `target_entropy` | -1 | entropy that it is learned for, in nats for each command |
@@ -29,7 +29,7 @@ pub type Sac<P> = OffPolicy<P, SacRule>;
 pub struct SacConfig {
     /// What it has in common with others.
     pub replay: ReplayConfig,
-    /// α at first, in units of the spread of returns: what a nat of entropy is worth.
+    /// α at first, in units of [`value_scale`](ReplayConfig::value_scale): what a nat of entropy is worth.
     pub temperature: f64,
     /// Whether it is learned (eq. 18).
     pub train_temperature: bool,
@@ -57,8 +57,7 @@ impl Default for SacConfig {
 impl Settings for SacConfig {
     fn fields(&mut self, fields: &mut Fields<'_, '_>) {
         self.replay.fields(fields);
-        let about =
-            "what a nat of entropy is worth at first, as a share of the spread of the returns that the warm-up saw";
+        let about = "what a nat of entropy is worth at first, in units of `value_scale`";
         fields.number("temperature", &mut self.temperature, 1e-9..=1e3, about);
         fields.flag("train_temperature", &mut self.train_temperature, "whether the temperature is learned");
         let about = "Adam's, for the logarithm of the temperature";

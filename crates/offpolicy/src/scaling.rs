@@ -30,9 +30,9 @@ pub(crate) struct Scaling {
     /// Commands and designs by their limits, efforts by twice the spread of their noise: a critic has to tell what the noise does
     /// from what the command does.
     pub(crate) action: Vec<Affine>,
-    /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen, or in
-    /// the mean's place [what they are told](ReplayConfig::initial_value). A critic that began at 0 whatever the returns are would take
-    /// steps by the thousands to learn what every state is worth alike.
+    /// What critics say, 0 and 1, is this value and the first plus the second: mean and spread of the returns that were seen, or what
+    /// [they](ReplayConfig::initial_value) [are told](ReplayConfig::value_scale). A critic that began at 0 whatever the returns are
+    /// would take steps by the thousands to learn what every state is worth alike.
     pub(crate) value: (f64, f64),
     pub(crate) taken: bool,
 }
@@ -73,7 +73,7 @@ impl Scaling {
                     None => Affine { center: 0.0, scale: 2.0 * log_std[a].exp() },
                 })
                 .collect(),
-            value: (settings.initial_value.unwrap_or(mean), spread),
+            value: (settings.initial_value.unwrap_or(mean), settings.value_scale.unwrap_or(spread)),
             taken: true,
         }
     }

@@ -130,8 +130,8 @@ pub fn beginning(assembly: &Assembly, params: Vec<f32>, env_steps: u64) -> Resul
 }
 
 /// What is to be said of trainings that have not [`moved`].
-pub const STILL: &str = "every update was rejected, or too small to be seen in the parameters; look at kl and step_fraction in \
-                         metrics.csv, and at the learner's settings";
+pub const STILL: &str = "every update was rejected, too small to be seen in the parameters, or left out while the learner warmed up; look \
+                         at its columns in metrics.csv, and at its settings";
 
 /// Whether a training changed any parameter by more than rounding does. `from`: the checkpoint that it was given; it counts where
 /// it is before the first iteration, as that of a training that goes on with the parameters of [another one](beginning).

@@ -294,10 +294,11 @@ fn returns_move_what_is_drawn_alone() {
     assert!(assemble("episode").is_ok() && assemble("fixed").is_ok());
 }
 
-/// Before critics have learned, they expect everywhere what they are told to, give or take the tenth that they were born with.
+/// Before critics have learned, they expect everywhere what they are told to, give or take the tenth that they were born with, of
+/// their unit.
 #[test]
 fn critics_begin_at_their_initial_value() {
-    let first_value = |initial_value| {
+    let first_value = |initial_value, value_scale| {
         let settings = [
             ("learner.algorithm", "td3"),
             ("train.env_steps", "2400"),
@@ -306,13 +307,16 @@ fn critics_begin_at_their_initial_value() {
             ("td3.learning_rate", "1e-9"),
             ("td3.critic_learning_rate", "1e-9"),
             ("td3.initial_value", initial_value),
+            ("td3.value_scale", value_scale),
         ];
         let mut recorder = Recorder::default();
         finish(&assembly("reach", None, &settings), &mut recorder);
         let value = recorder.learner.iter().position(|name| name == "value").unwrap();
         recorder.rows[0].learner[value]
     };
-    let (measured, zero, more) = (first_value("none"), first_value("0"), first_value("100"));
+    let (measured, zero, more) = (first_value("none", "none"), first_value("0", "none"), first_value("100", "none"));
     assert!(measured < -5.0 && zero.abs() < 5.0, "{measured} where returns are, {zero} at 0");
     assert!((more - zero - 100.0).abs() < 1e-3, "{more} is not 100 above {zero}");
+    let (one, ten) = (first_value("0", "1"), first_value("0", "10"));
+    assert!(one != 0.0 && (ten - 10.0 * one).abs() < 1e-3 * one.abs(), "{ten} is not 10 times {one}");
 }

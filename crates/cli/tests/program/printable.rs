@@ -86,7 +86,7 @@ fn a_comparison_of_trainings_that_change_nothing_says_so() {
     // CMA-ES reads none of these.
     let line = "compare reach --methods hwasp,cmaes --seeds 2 --env-steps 20000 --set train.evaluation_episodes=2 --set \
                 ppo.learning_rate=1e-9 --set design.learning_rate_scale=0 --set noise.learning_rate_scale=0 --out both";
-    let remark = "Trainings that changed nothing: every update was rejected, or too small";
+    let remark = "Trainings that changed nothing: every update was rejected, too small";
     // The second time all cells are there.
     for _ in 0..2 {
         let output = sandbox.run(line);

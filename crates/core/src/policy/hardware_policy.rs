@@ -400,8 +400,9 @@ impl Policy for HardwarePolicy {
 
     fn drawn_params(&self) -> Vec<usize> {
         let (layout, begin) = (&self.composition.layout, self.design_params().start);
-        let stand_in = |i| self.composition.free.iter().position(|free| free == i).map(|at| begin + at);
-        layout.sampled[..layout.drawn].iter().filter_map(stand_in).collect()
+        let free = &self.composition.free;
+        let stand_in = |i| begin + free.iter().position(|free| free == i).expect("what is drawn is free");
+        layout.sampled[..layout.drawn].iter().map(stand_in).collect()
     }
 
     fn seen_design(&self, params: &[f32]) -> Vec<f32> {

@@ -100,6 +100,7 @@ impl Problem for GraspProblem {
         match self.palm {
             PalmMotion::Vertical => vec![
                 Preset::new("z-grasp", include_str!("../../../../experiments/z-grasp.toml")),
+                Preset::new("z-grasp-60n", include_str!("../../../../experiments/z-grasp-60n.toml")),
                 Preset::new("z-grasp-bench", include_str!("../../../../experiments/z-grasp-bench.toml")),
                 Preset::new("3d-grasp-hold", include_str!("../../../../experiments/3d-grasp-hold.toml")),
             ],
